@@ -171,10 +171,6 @@ class DrivenWorld(SteppedWorld, Protocol):
     def drive(self) -> Driver | None:
         """What takes them; None where the library is not as it should be for it."""
 
-    @property
-    def obstacle(self) -> str:
-        """Why nothing takes them; an empty string where something does."""
-
 
 class SelfSteppingWorld(World, Protocol):
     """A world whose engine chooses its own steps, by its own estimate of the error."""

@@ -126,8 +126,6 @@ class Kernel:
         What is interpreted, and what is compiled.
     sources : Path
         The folder of the modules that it consists of.
-    nogil : bool
-        Whether other threads of Python run while it does, compiled.
     purse : Purse or None
         At whose expense it is interpreted; None where others decide that.
     """
@@ -135,12 +133,10 @@ class Kernel:
     tell: ClassVar[Callable[[str], None] | None] = None
     """Who is told, the first time, that compiling begins."""
 
-    def __init__(
-        self, function: Callable[..., Any], sources: Path, nogil: bool, purse: Purse | None
-    ) -> None:
+    def __init__(self, function: Callable[..., Any], sources: Path, purse: Purse | None) -> None:
         update_wrapper(self, function)
         self.py_func = function
-        self._sources, self._nogil, self._purse = sources, nogil, purse
+        self._sources, self._purse = sources, purse
         self._dispatcher: Any = None
 
     def __call__(self, *arguments: Any) -> Any:
@@ -162,7 +158,7 @@ class Kernel:
         except OSError as error:
             if error.errno not in FULL:
                 raise
-            self._dispatcher = _compiled(self.py_func, None, self._nogil)
+            self._dispatcher = _compiled(self.py_func, None)
             return self._dispatcher(*arguments)
 
     @property
@@ -174,7 +170,7 @@ class Kernel:
             if tell is not None and not holds(folder, self.py_func):
                 Kernel.tell = None
                 tell("compiling, once: some 10 to 40 s")
-            self._dispatcher = _compiled(self.py_func, folder, self._nogil)
+            self._dispatcher = _compiled(self.py_func, folder)
         return self._dispatcher
 
     @property
@@ -195,24 +191,21 @@ def form_for(cases: int, kernel: Function) -> Function:
     return known.run if cases > FEW else kernel
 
 
-def keeper(
-    sources: Path, *, nogil: bool = True, purse: Purse | None = None
-) -> Callable[[Function], Function]:
+def keeper(sources: Path, *, purse: Purse | None = None) -> Callable[[Function], Function]:
     """Return the decorator of the kernels in a folder, which call no kernel of another one.
 
-    Compiled, a kernel is kept on disk, and releases the GIL unless told not to. No operation is
-    merged with another: whether it is would depend on what the compiler inlines, and the last digit
-    on which process compiled.
+    Compiled, a kernel is kept on disk, and other threads of Python run while it does. No operation
+    is merged with another: whether it is would depend on what the compiler inlines, and the last
+    digit on which process compiled.
 
     Parameters
     ----------
     sources : Path, the folder of the modules that the kernels consist of
-    nogil : bool, whether other threads of Python run while a compiled kernel does
     purse : Purse or None, see `Kernel`
     """
 
     def decorate(function: Function) -> Function:
-        return cast(Function, Kernel(function, sources, nogil, purse))
+        return cast(Function, Kernel(function, sources, purse))
 
     return decorate
 
@@ -251,13 +244,13 @@ _waiting: list[tuple[Callable[..., Any], Callable[..., Any], dict[str, Any]]] = 
 _compiling = threading.RLock()
 
 
-def _compiled(function: Callable[..., Any], folder: Path | None, nogil: bool) -> Any:
+def _compiled(function: Callable[..., Any], folder: Path | None) -> Any:
     import numba
 
     njit: Any = numba.njit  # its types leave out what it takes with an underscore
     with _compiling:
         _introduce()
-        compile_ = njit(cache=folder is not None, nogil=nogil, error_model="numpy")
+        compile_ = njit(cache=folder is not None, nogil=True, error_model="numpy")
         with cache_folder(folder):
             return compile_(function)
 

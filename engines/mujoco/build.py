@@ -4,16 +4,15 @@ from functools import partial
 from importlib import import_module
 from typing import Any
 
-from engines.mujoco.contact import notice_step, prepare_step, read_now
-from engines.mujoco.contact_state import ContactState, arrays_of, begin_contact
-from engines.mujoco.fast import drive, memory_of, obstacle
+from engines.mujoco.contact import notice, prepare, read
+from engines.mujoco.contact_state import ContactState, Forces, arrays_of, begin_contact
 from engines.mujoco.model import OPTIONS, coordinates, impedance_of, model_xml
 from engines.mujoco.models import given_back, taken
 from engines.mujoco.settings import (
     MujocoSettings,
     kept,
 )
-from engines.parts.compiled import INTERPRETED, FloatArray, interpreted
+from engines.parts.compiled import FloatArray, interpreted, switched_off
 from engines.parts.readback import disagreement
 from engines.scene import Scene
 from engines.world import Driver, Moment, Step
@@ -42,34 +41,26 @@ class MujocoWorld:
         self._fault = self._read_back(scene, dt_s)
         if not all(body.at.at_rest for body in scene.bodies):
             self._data.qpos[:], self._data.qvel[:] = coordinates(scene, s)
-        self._holds = ContactState.blank()
-        self._held = self._holds[0]
+        loops = scene.compiled and looping()
+        holds = ContactState.blank() if loops else [ContactState.plain()]
+        self._held = holds[0]
         begin_contact(self._held, scene, s, dt_s, self._model.npair)
-        self._arrays = tuple(arrays_of(self._model, self._data, self._held, scene))
-        self._memory = memory_of(self._model, self._data)
+        self._arrays = arrays_of(self._model, self._data, self._held, scene)
+        self.drive: Driver | None = None
+        if loops:
+            from engines.mujoco.loop import drive, memory_of
+
+            self.drive = partial(drive, holds, self._arrays, memory_of(self._model, self._data))
         # the library would write its warnings to a file; they are counted and read from `fault`
         self._mj.set_mju_user_warning(_ignore)
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
-        data, numbers = self._data, (*step[:-2], int(step.phase), step.side)
-        prepare_step(self._holds, self._arrays, numbers)
+        data, held, arrays = self._data, self._held, self._arrays
+        prepare(held, arrays, step)
         self._option.timestep = step.dt_s
         self._mj.mj_step(self._model, data)
-        forces = data.ncon, data.nefc, data.efc_R, data.efc_force
-        notice_step(self._holds, self._arrays, forces, numbers)
-
-    @property
-    def drive(self) -> Driver | None:
-        """What takes many steps at once; see `engines.world.DrivenWorld`."""
-        if self._memory is None:
-            return None
-        return partial(drive, self._holds, self._arrays, self._memory)
-
-    @property
-    def obstacle(self) -> str:
-        """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
-        return INTERPRETED if interpreted() else obstacle()
+        notice(held, arrays, Forces(data.ncon, data.nefc, data.efc_R, data.efc_force), step)
 
     @property
     def base_x_m(self) -> float:
@@ -83,8 +74,8 @@ class MujocoWorld:
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
-        read_now(self._holds, self._arrays)
-        return self._arrays[-1]
+        read(self._held, self._arrays)
+        return self._arrays.state
 
     def fault(self) -> str:
         """Say which setting was not taken, or what the engine warned of."""
@@ -147,6 +138,15 @@ def world_of(scene: Scene, settings: MujocoSettings, dt_s: float) -> MujocoWorld
     dt_s : float, ordinary step [s], from which depths of the contact follow
     """
     return MujocoWorld(scene, kept(scene, settings), dt_s)
+
+
+def looping() -> bool:
+    """Return whether a compiled loop can take the steps, and compiled code is used at all."""
+    if interpreted() or switched_off():
+        return False
+    from engines.mujoco.loop import usable
+
+    return usable()
 
 
 def _ignore(message: str) -> None:

@@ -1,14 +1,12 @@
 """How MuJoCo's contact holds a block, step by step: set before a step, looked at after it.
 
-The functions read and write the library's own arrays. They are compiled, and serve both who steps
-from Python and who steps from a compiled loop. In all of them held is what is known of the block
-and of what holds it, arrays are the library's, step is the one that follows, or that was taken, and
-pair is the number of a row of arrays.pairs.
+The functions read and write the library's own arrays; Python calls them, or a compiled loop does
+(`engines.mujoco.loop`). In all of them held is what is known of the block and of what holds it,
+arrays are the library's, step is the one that follows, or that was taken, and pair is the number of
+a row of arrays.pairs.
 """
 
 import math
-from collections.abc import Sequence
-from typing import Any
 
 from engines.layouts import LOWER
 from engines.mujoco.contact_state import (
@@ -27,7 +25,7 @@ from engines.mujoco.contact_state import (
     Forces,
 )
 from engines.mujoco.model import direct_reference
-from engines.parts.compiled import FloatArray, kernel, shared
+from engines.parts.compiled import FloatArray, shared
 from engines.parts.reflection import part_of, take_in
 from engines.world import ContactPhase, Pose, Step
 
@@ -39,52 +37,6 @@ LEAST_HELD = 1e-3
 
 FREE, WELDED = 7, 6
 """Coordinates of a free joint, and the solver's rows of a weld, which come before the contacts'."""
-
-
-@kernel
-def read_now(holds: Sequence[ContactState], arrays: tuple[FloatArray, ...]) -> None:
-    """Read the state, for Python.
-
-    Parameters
-    ----------
-    holds : sequence of ContactState (1,), from `ContactState.blank`
-    arrays : tuple of ndarray, in the order of `Arrays`; the last one, (bodies, 4), is written
-    """
-    read(holds[0], Arrays(*arrays))
-
-
-@kernel
-def prepare_step(
-    holds: Sequence[ContactState], arrays: tuple[FloatArray, ...], step: tuple[Any, ...]
-) -> None:
-    """Set what a step needs, but for its length; for Python.
-
-    Parameters
-    ----------
-    holds : sequence of ContactState (1,), updated
-    arrays : tuple of ndarray, in the order of `Arrays`; written as by `prepare`
-    step : tuple (10,), the step that follows, in the order of `Step`, with a number for its phase
-    """
-    prepare(holds[0], Arrays(*arrays), Step(*step))
-
-
-@kernel
-def notice_step(
-    holds: Sequence[ContactState],
-    arrays: tuple[FloatArray, ...],
-    forces: tuple[int, int, FloatArray, FloatArray],
-    step: tuple[Any, ...],
-) -> None:
-    """Note what a step has done, for the next one; for Python.
-
-    Parameters
-    ----------
-    holds : sequence of ContactState (1,), updated
-    arrays : tuple of ndarray, in the order of `Arrays`; written as by `notice`
-    forces : (int, int, ndarray (rows,) [1/kg], ndarray (rows,) [N]), in the order of `Forces`
-    step : tuple (10,), the step that was taken, as for `prepare_step`
-    """
-    notice(holds[0], Arrays(*arrays), Forces(*forces), Step(*step))
 
 
 @shared

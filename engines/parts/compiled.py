@@ -34,46 +34,12 @@ PACKAGE = Path(__file__).parents[__name__.count(".") - 1]
 kernel = keeper(PACKAGE)
 """Let a function be called from Python in either form; see `analytic.kernels.compiled.keeper`."""
 
-exclusive = keeper(PACKAGE, nogil=False)
-"""Do, as `kernel`, with what calls a library that keeps some of its numbers for the whole process:
-no other thread of Python runs meanwhile."""
-
 shared = maker
 """Let kernels call a function, compiled into them; called from Python it remains Python."""
 
 PURSE = Purse(PACKAGE, loading=20_000, compiling=100_000)
 
 Answer = TypeVar("Answer")
-
-SWITCHED_OFF = "numba is switched off"
-INTERPRETED = "a few steps need not be compiled"
-
-
-class CFunction:
-    """A function of a library's as compiled code calls it.
-
-    Parameters
-    ----------
-    symbol : str
-        Its name.
-    result, arguments : str
-        What it returns and takes, as numba names them.
-    """
-
-    def __init__(self, symbol: str, result: str, *arguments: str) -> None:
-        self.symbol = symbol
-        self._result, self._arguments = result, arguments
-
-    def __call__(self, *_: Any) -> Any:
-        """Refuse to be called from Python."""
-        raise TypeError(f"{self.symbol} is called by compiled code alone")
-
-    @property
-    def _numba_type_(self) -> Any:
-        from numba import types
-
-        result, *arguments = (getattr(types, name) for name in (self._result, *self._arguments))
-        return types.ExternalFunction(self.symbol, result(*arguments))
 
 
 def switched_off() -> bool:

@@ -73,5 +73,4 @@ ENGINE = Engine(
     rules=RULES,
     remedy={"iterations": 10000},
     own_step="pybullet:stepSimulation",
-    compiles=True,
 )

@@ -2,24 +2,17 @@
 
 import contextlib
 import math
-from collections.abc import Callable, Mapping, Sequence
-from functools import cache, partial
+from collections.abc import Mapping
+from threading import Lock
 from typing import Any
 
 import numpy as np
 
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
-from engines.parts.compiled import (
-    INTERPRETED,
-    SWITCHED_OFF,
-    FloatArray,
-    interpreted,
-    switched_off,
-)
+from engines.parts.compiled import FloatArray
 from engines.parts.quiet import imported, silence
 from engines.parts.readback import disagreement
 from engines.pybullet.calls import (
+    UPRIGHT,
     Call,
     Constant,
     aloft,
@@ -34,35 +27,24 @@ from engines.pybullet.calls import (
     engine_call,
     hold_call,
     most_force,
-    move_call,
-)
-from engines.pybullet.clients import given_back, held_for_all, taken
-from engines.pybullet.fast import (
-    Client,
-    ContactState,
-    begin_contact,
-    client_of,
-    clients,
-    corrected,
-    drive,
-    once,
 )
 from engines.pybullet.settings import (
-    LANDING,
+    LIBRARY_BREAKING_THRESHOLD,
+    LIBRARY_STEP_S,
     BulletSettings,
 )
 from engines.scene import Scene
-from engines.world import ContactPhase, Driver, Moment, Pose, Step
+from engines.world import ContactPhase, Moment, Pose, Step
 
-TRIAL = (
-    Step(1e-3, 1.0e-3, 5.00e-4, 0.0, -4.9, 0.006, 0.006, 6.00e-6, ContactPhase.SWING, 1.0),
-    Step(5e-4, 1.5e-3, 7.50e-4, 0.0, -14.7, 0.009, 0.015, 1.35e-5, ContactPhase.SWING, 1.0),
-    Step(2e-3, 3.5e-3, 1.25e-3, 0.0, -6.1, 0.015, 0.030, 7.35e-5, ContactPhase.SWING, 1.0),
-    Step(1e-3, 4.5e-3, 1.50e-3, 0.0, -14.7, 0.018, 0.048, 1.22e-4, ContactPhase.APPROACH, 1.0),
-    Step(1e-5, 4.51e-3, 5.05e-4, 0.0, -495.4, 0.006, 0.054, 1.22e-4, ContactPhase.STRIKE, 1.0),
-    Step(1e-3, 5.51e-3, 5.05e-4, 0.0, -4.95, 0.006, 0.060, 1.82e-4, ContactPhase.REST, 0.0),
-)
-"""Steps by which a compiled loop is held against Python."""
+RENDERER = "tinyRendererPlugin"
+"""The library's name of what draws, or would."""
+
+held_for_all = Lock()
+"""Whose gap it is up to which contacts are kept: the library holds it for the whole process, and
+looks at it when two bodies meet first, on a plane while a scene is built."""
+
+idle: list[int] = []
+"""Clients of this process whose run has ended: most runs are shorter than connecting."""
 
 
 class BulletWorld:
@@ -77,13 +59,12 @@ class BulletWorld:
 
     def __init__(self, scene: Scene, settings: BulletSettings, dt_s: float) -> None:
         self._s, self._ordinary = settings, dt_s
-        self._p = imported("pybullet")
-        most, self._due, self._lag, self.base_x_m = most_force(scene), 0.0, 0.0, 0.0
-        self._held_by = -1, most
+        self._p, self._client = taken()
+        self._held_by, self._most = -1, most_force(scene)
+        self._due, self._lag, self.base_x_m = 0.0, 0.0, 0.0
         self._constrained = constrained(scene, settings)
-        loops = scene.compiled and not self.obstacle
-        self._client = taken(self._p)
         self._moving = scene.frame == "world"
+        self._dt: float | None = None
         self._phase: ContactPhase | None = None
         self._ground = base_place(scene, settings)
         with held_for_all:
@@ -93,60 +74,35 @@ class BulletWorld:
             self._bodies = [self._made(scene, number) for number in range(len(scene.bodies))]
             self._fault = self._set_bodies(scene)
             if self._constrained:
-                self._held_by = int(self._do(hold_call(scene, settings, self._base))), most
+                self._held_by = int(self._do(hold_call(scene, settings, self._base)))
             self._take_inertia(scene)
         self._put(scene)
-        self._holds = ContactState.blank()
-        self._held = self._holds[0]
-        begin_contact(self._held, scene, settings, dt_s)
-        self._held.block, self._held.base = self._bodies[0], self._base
         self._state = np.zeros((len(self._bodies), len(Pose._fields)))
-        self._lent = self.lent() if loops else None
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
         p, client = self._p, self._client
-        if step.dt_s != self._held.dt or step.phase is not self._phase:
+        if step.dt_s != self._dt or step.phase is not self._phase:
             erp = self._erp(step) if self._s.by_phase else {}
             p.setPhysicsEngineParameter(fixedTimeStep=step.dt_s, **erp, physicsClientId=client)
-            self._held.dt, self._phase = step.dt_s, step.phase
+            self._dt, self._phase = step.dt_s, step.phase
         if self._moving:
             self._move_base(step)
-        p.setGravity(step.pull_x, 0.0, step.pull_z, physicsClientId=client)
-        p.stepSimulation(physicsClientId=client)
+        p.setGravity(step.pull_x, 0.0, step.pull_z, client)
+        p.stepSimulation(client)
         self._due = step.base_x
-
-    @property
-    def drive(self) -> Driver | None:
-        """What takes many steps at once; see `engines.world.DrivenWorld`."""
-        return None if self._lent is None else partial(drive, *self._lent)
-
-    @property
-    def obstacle(self) -> str:
-        """Why nothing takes many steps at once; see `engines.world.DrivenWorld`."""
-        if self._constrained:
-            return "the base is held by a constraint"
-        if switched_off() or interpreted():
-            return SWITCHED_OFF if switched_off() else INTERPRETED
-        if not clients(self._p).size:
-            return "the library is another build, whose clients are not known"
-        return "" if loop_agrees() else "its loop does not step as Python does"
-
-    def lent(self) -> tuple[Sequence[ContactState], Client]:
-        """Return what a compiled loop steps by."""
-        return self._holds, client_of(self._p, self._client, self._bodies[0], self._state)
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
         p, client, moved, raised = self._p, self._client, 0.0, 0.0
         if self._moving:
-            (moved, _, z), _ = p.getBasePositionAndOrientation(self._base, physicsClientId=client)
+            (moved, _, z), _ = p.getBasePositionAndOrientation(self._base, client)
             raised = z - self._ground[2]
             self.base_x_m, self._lag = moved, max(self._lag, abs(moved - self._due))
-        for row, body in zip(self._state, self._bodies, strict=True):
-            (x, _, z), q = p.getBasePositionAndOrientation(body, physicsClientId=client)
-            rate = p.getBaseVelocity(body, physicsClientId=client)[1][1]
-            row[:] = x - moved, z - raised, 2.0 * math.atan2(q[1], q[3]), rate
+        for row, body in enumerate(self._bodies):
+            (x, _, z), q = p.getBasePositionAndOrientation(body, client)
+            rate = p.getBaseVelocity(body, client)[1][1]
+            self._state[row] = x - moved, z - raised, 2.0 * math.atan2(q[1], q[3]), rate
         return self._state
 
     @property
@@ -157,9 +113,7 @@ class BulletWorld:
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
         engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
-        return self._fault or disagreement(
-            {"fixedTimeStep": (self._held.dt or None, engine["fixedTimeStep"])}
-        )
+        return self._fault or disagreement({"fixedTimeStep": (self._dt, engine["fixedTimeStep"])})
 
     def close(self) -> None:
         """Leave the client to the next run."""
@@ -170,9 +124,9 @@ class BulletWorld:
 
         With the shape's own a block that is lifted or released at once would turn too fast.
         """
-        p, client, upright = self._p, self._client, (0.0, 0.0, 0.0, 1.0)
+        p, client = self._p, self._client
         for body, place in zip(self._bodies, aloft(scene), strict=True):
-            p.resetBasePositionAndOrientation(body, place, upright, physicsClientId=client)
+            p.resetBasePositionAndOrientation(body, place, UPRIGHT, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
 
     def _put(self, scene: Scene) -> None:
@@ -186,17 +140,20 @@ class BulletWorld:
             p.resetBaseVelocity(number, velocity, rate, physicsClientId=client)
 
     def _move_base(self, step: Step) -> None:
-        place = [step.base_x, *self._ground[1:]]
-        self._do(move_call(self._s, self._base, self._held_by, place, step.base_velocity))
+        """Give the base its velocity or its place, or move what holds it there."""
+        p, client, place = self._p, self._client, [step.base_x, *self._ground[1:]]
+        if self._constrained:
+            p.changeConstraint(self._held_by, place, maxForce=self._most, physicsClientId=client)
+        elif self._s.floor == "velocity":
+            p.resetBaseVelocity(self._base, [step.base_velocity, 0.0, 0.0], physicsClientId=client)
+        else:
+            p.resetBasePositionAndOrientation(self._base, place, UPRIGHT, client)
 
     def _erp(self, step: Step) -> dict[str, float]:
         """Return what a step corrects of positions."""
-        held = self._held
-        normal, across = corrected(step.phase, step.dt_s, held.ordinary)
-        return {
-            "contactERP": normal * held.contact_erp,
-            "frictionERP": across * held.friction_erp,
-        }
+        normal, across = corrected(step.phase, step.dt_s, self._ordinary)
+        contact, friction = self._s.contact_erp or 0.0, self._s.friction_erp or 0.0
+        return {"contactERP": normal * contact, "frictionERP": across * friction}
 
     def _set_engine(self, scene: Scene) -> None:
         # the library announces a solver past Python
@@ -252,31 +209,52 @@ class BulletWorld:
         return tuple(self._p.getDynamicsInfo(body, -1, physicsClientId=self._client))
 
 
-@cache
-def loop_agrees() -> bool:
-    """Return whether a loop can step a block on a moving base, and as Python does."""
-    known = clients(imported("pybullet"))
-    return bool(known.size) and _trial(_by_loop) == _trial(_by_calls)
+def taken() -> tuple[Any, int]:
+    """Return the library, and a client that no run uses, as good as new.
+
+    It is without a renderer, whose meshes take longer to make than the bodies.
+    """
+    p = imported("pybullet")
+    if idle:
+        return p, idle.pop()
+    client = int(p.connect(p.DIRECT))
+    with silence():  # a build that has none says so past Python
+        renderer = p.loadPlugin(RENDERER, physicsClientId=client)
+    if renderer >= 0:
+        p.unloadPlugin(renderer, physicsClientId=client)
+    return p, client
 
 
-def _trial(after: Callable[[BulletWorld, Step], FloatArray]) -> list[list[float]]:
-    """Return the poses after each step of the trial."""
-    block = RigidBlock(width=0.5, height=1.5)
-    motion = SinePulse(amplitude=1.0, omega=1.0)
-    scene = Scene(system=block, motion=motion, start=(0.1, 0.5), frame="world", compiled=False)
-    world = BulletWorld(scene, LANDING, TRIAL[0].dt_s)
-    try:
-        return [after(world, step)[0].tolist() for step in TRIAL]
-    finally:
-        world.close()
+def given_back(p: Any, client: int) -> None:
+    """Empty a client of the library for the next run, and put back what a reset keeps."""
+    p.resetSimulation(physicsClientId=client)
+    with held_for_all:
+        p.setPhysicsEngineParameter(
+            contactBreakingThreshold=LIBRARY_BREAKING_THRESHOLD,
+            fixedTimeStep=LIBRARY_STEP_S,
+            physicsClientId=client,
+        )
+    idle.append(client)
 
 
-def _by_calls(world: BulletWorld, step: Step) -> FloatArray:
-    world.step(step)
-    return world.state()
+def corrected(phase: ContactPhase, dt_s: float, ordinary_s: float) -> tuple[float, float]:
+    """Return the parts of a position's error to correct, along a contact's normal and across it.
 
+    None in a step around an impact: a short step would make a velocity of it. None across at rest,
+    where the places that two corners are held at contradict each other by a rounding, and the
+    solver would look for a compromise until its iterations end.
 
-def _by_loop(world: BulletWorld, step: Step) -> FloatArray:
-    holds, client = world.lent()
-    once(holds, client, (*step[:-2], int(step.phase), step.side))
-    return client.state
+    Parameters
+    ----------
+    phase : ContactPhase, of the step
+    dt_s, ordinary_s : float, its length, and that of an ordinary one [s]
+
+    Returns
+    -------
+    (float, float)
+        Each from 0 to 1.
+    """
+    if phase in (ContactPhase.APPROACH, ContactPhase.STRIKE):
+        return 0.0, 0.0
+    part = min(1.0, dt_s / ordinary_s)
+    return part * part, 0.0 if phase is ContactPhase.REST else part * part

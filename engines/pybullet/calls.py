@@ -34,7 +34,7 @@ FLOOR_G = 50.0
 """Most force that holds it, over its weight, as in the library's example of such a constraint: 50 N
 on a cube of 0.1 kg. By its weight alone a base sinks; from twice as much on it does not matter."""
 
-NOWHERE = (0.0, 0.0, 0.0)
+NOWHERE, UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
 
 class Constant(str):
@@ -194,32 +194,6 @@ def hold_call(scene: Scene, s: BulletSettings, base: Any) -> Call:
 def most_force(scene: Scene) -> float:
     """Return the largest force [N] by which the constraint holds the base."""
     return FLOOR_G * scene.system.gravity * FLOOR_MASSES * _mass(scene)
-
-
-def move_call(
-    s: BulletSettings, base: Any, held_by: tuple[Any, float], place: list[Any], speed: Any
-) -> Call:
-    """Return the call that moves the base, or its constraint of a largest force [N].
-
-    It goes to a place [m], which the velocity along x [m/s] leads it to in a step.
-
-    Parameters
-    ----------
-    s : BulletSettings, of which floor says how
-    base : int, the base's number, or what a script calls it
-    held_by : (int, float), its constraint, likewise, and the force
-    place : list (3,), of its centre at the end of the step [m]
-    speed : float, its velocity along x [m/s]; a script has words for it and for the place
-    """
-    if s.floor == "constraint":
-        constraint, most = held_by
-        where = {"jointChildPivot": place, "maxForce": most}
-        return Call("changeConstraint", {"userConstraintUniqueId": constraint, **where})
-    if s.floor == "velocity":
-        velocity = {"linearVelocity": [speed, 0.0, 0.0]}
-        return Call("resetBaseVelocity", {"objectUniqueId": base, **velocity})
-    upright = {"posObj": place, "ornObj": (0.0, 0.0, 0.0, 1.0)}
-    return Call("resetBasePositionAndOrientation", {"bodyUniqueId": base, **upright})
 
 
 def _mass(scene: Scene) -> float:

@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from engines.parts.quiet import imported
+from engines.pybullet.build import given_back, held_for_all, taken
 from engines.pybullet.calls import Call, Constant, base_call, body_call, engine_call
-from engines.pybullet.clients import given_back, held_for_all, taken
 from engines.pybullet.settings import BulletSettings
 
 
@@ -12,8 +11,8 @@ class BulletCylinder:
     """A body with one shape, on a plane."""
 
     def __init__(self, scene: Any, s: BulletSettings, dt_s: float) -> None:
-        self._p, it = imported("pybullet"), scene.cylinder
-        self._client = taken(self._p)
+        it = scene.cylinder
+        self._p, self._client = taken()
         with held_for_all:
             self._make(engine_call(scene, s, dt_s))
             self._p.setTimeStep(dt_s, physicsClientId=self._client)

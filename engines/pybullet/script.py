@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from textwrap import fill
 from typing import Any
 
-from engines.parts.script import Script
+from engines.parts.script import Script, moved
 from engines.pybullet.calls import (
+    UPRIGHT,
     Call,
     Constant,
     aloft,
@@ -21,23 +22,23 @@ from engines.pybullet.calls import (
     engine_call,
     hold_call,
     most_force,
-    move_call,
 )
 from engines.pybullet.settings import BulletSettings
 from engines.scene import Scene
 
-FLOOR, BASE, HELD_BY = map(Constant, ("floor", "base", "held_by"))
+FLOOR, BASE = map(Constant, ("floor", "base"))
 """Variables of the script; of the first body they are ``shape`` and ``block``."""
-
-PLACE, SPEED = map(Constant, ("base_x", "base_velocity"))
-"""What a step of it is told of the base."""
 
 
 def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
     """Return a scene as calls of PyBullet; see `engines.parts.script`."""
-    ground, moves, holds = base_place(scene, s), scene.frame == "world", constrained(scene, s)
-    hold = hold_call(scene, s, BASE)
-    move = move_call(s, BASE, (HELD_BY, most_force(scene)), [PLACE, *ground[1:]], SPEED)
+    moves, holds, hold = scene.frame == "world", constrained(scene, s), hold_call(scene, s, BASE)
+    place = f"[{{x}}, 0.0, {base_place(scene, s)[2]!r}]"
+    ways = {
+        "constraint": (f"p.changeConstraint(held_by, {place}, maxForce={most_force(scene)!r})",),
+        "velocity": ("p.resetBaseVelocity(base, linearVelocity=[{v}, 0.0, 0.0])",),
+        "position": (f"p.resetBasePositionAndOrientation(base, {place}, {UPRIGHT})",),
+    }
     engine, base, made, settings = engine_call(scene, s, dt_s), base_call(s, BASE), [], []
     at = "p.getBasePositionAndOrientation({})[0][0]"
     names = [f"block{number or ''}" for number in range(len(scene.bodies))]
@@ -62,7 +63,7 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
             "p.setTimeStep(DT)",
         ),
         step=(
-            *written(move).splitlines() * moves,
+            *moved(scene, s.floor, 1.0, ways),
             *("p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
         ),
         pose=(
@@ -77,7 +78,7 @@ def script(scene: Scene, s: BulletSettings, dt_s: float) -> Script:
 def _beginning(scene: Scene, names: list[str]) -> Iterator[str]:
     """Yield lines that let bodies set out; each has its inertia only after a step, far aloft."""
     for place, name in zip(aloft(scene), names, strict=True):
-        yield f"p.resetBasePositionAndOrientation({name}, {place}, {(0.0, 0.0, 0.0, 1.0)})"
+        yield f"p.resetBasePositionAndOrientation({name}, {place}, {UPRIGHT})"
     yield "p.stepSimulation()"
     for body, name in zip(scene.bodies, names, strict=True):
         at, half = body.at, 0.5 * body.at.theta

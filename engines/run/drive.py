@@ -70,10 +70,11 @@ def run(engine: str | Engine, scene: Scene) -> Response:
             preset.stepping,
             asked.resolution(scene.system),
         )
-        driver = driver_of(world, scene)
+        looped = scene.compiled and getattr(world, "drive", None) is not None
     finally:
         world.close()
     said = [] if scene.preset or preset is asked.best else [f"as {asked.name}:{preset.name}"]
+    driver = "compiled" if looped else "python"
     message = "; ".join(filter(None, (*said, response.message)))
     return replace(response, setup_s=built - began, driver=driver, message=message)
 
@@ -174,16 +175,6 @@ def driven(monitor: Monitor, world: World) -> Callable[[int], int] | None:
     monitor.make_room(0)
     drive(monitor.runs, monitor.lists, 0)  # what is not compiled yet is so before the clock runs
     return lambda most: drive(monitor.runs, monitor.lists, most)
-
-
-def driver_of(world: World, scene: Scene) -> str:
-    """Say what takes the steps of a world; see `analytic.response.Response`."""
-    if not scene.compiled:
-        return "python"
-    obstacle = getattr(world, "obstacle", "")
-    if obstacle:
-        return f"python: {obstacle}"
-    return "compiled" if hasattr(world, "drive") else "python"
 
 
 class Stepper:

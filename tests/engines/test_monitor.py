@@ -1,7 +1,6 @@
-"""One look a step: compiled or not, from Python or from a compiled loop, to the same bit."""
+"""One look a step: compiled or not, from Python or from MuJoCo's loop, to the same bit."""
 
 import sys
-from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,11 +14,11 @@ from analytic.kernels.compiled import Purse, interpreting
 from analytic.response import Outcome
 from engines import ENGINES
 from engines.declaration import AT_REST
-from engines.mujoco import fast as mujoco_loop
+from engines.mujoco import loop as mujoco_loop
 from engines.mujoco import models as mujoco_models
 from engines.parts import compiled as parts
-from engines.parts.compiled import INTERPRETED, PACKAGE
-from engines.pybullet import clients as bullet_clients
+from engines.parts.compiled import PACKAGE
+from engines.pybullet import build as bullet
 from engines.run.drive import LOOK_AROUND, build
 from engines.run.monitor import roomy
 from studies.ensemble.study import noise
@@ -74,20 +73,28 @@ EACH = [
 
 
 @pytest.mark.parametrize(("engine", "options"), EACH)
-def test_a_loop_answers_compiled_and_interpreted_as_python_does(engine, options):
-    at_once, one_by_one = (
-        rocked(engine, compiled=compiled, **options) for compiled in (True, False)
-    )
+def test_a_run_answers_compiled_and_interpreted_alike(engine, options):
+    at_once = rocked(engine, **options)
     with interpreting(Purse(PACKAGE, 10**9, 0)):
-        interpreted = rocked(engine, **options)
-    found = at_once, one_by_one, interpreted
-    assert len({all_but_times(response) for response in found}) == 1
-    drivers = ["compiled", "python", f"python: {INTERPRETED}"]
-    assert [response.driver for response in found] == drivers
+        found = [rocked(engine, **options)]
+    if engine == "mujoco":
+        found.append(rocked(engine, compiled=False, **options))
+    assert {all_but_times(response) for response in found} == {all_but_times(at_once)}
 
 
-def test_what_is_compiled_is_so_ahead():
-    assert all(ENGINES[engine].compiles for engine in SCENES)
+def driven(**options):
+    world = build(ENGINES["mujoco"], scene(accuracy="loose", **options))
+    world.close()
+    return world.drive is not None
+
+
+@pytest.mark.skipif("mujoco" not in HERE, reason="MuJoCo is not installed")
+def test_mujoco_is_stepped_by_its_loop_unless_asked_not_to():
+    assert ENGINES["mujoco"].compiles
+    assert driven()
+    assert not driven(compiled=False)
+    with interpreting(Purse(PACKAGE, 10**9, 0)):
+        assert not driven()
 
 
 @pytest.mark.parametrize("engine", [name for name in HERE if name in SCENES])
@@ -96,13 +103,12 @@ def test_what_is_compiled_answers_as_it_does_in_python(engine):
     code = (
         "from given import all_but_times\nfrom uses import rocked\n"
         f"found = rocked({engine!r}, accuracy='loose', times={TIMES!r})\n"
-        "print(found.driver, all_but_times(found), sep='\\n')\n"
+        "print(all_but_times(found))\n"
     )
     done = python("-c", code, path=filter(None, sys.path), env={"NUMBA_DISABLE_JIT": "1"})
     compiled = rocked(engine, accuracy="loose", times=TIMES)
     assert compiled.outcome is Outcome.ROCKED
-    driver = "python: numba is switched off"
-    assert done.stdout.splitlines() == [driver, all_but_times(compiled)]
+    assert done.stdout.splitlines() == [all_but_times(compiled)]
 
 
 def test_memory_that_is_not_where_it_should_be_is_left_alone(monkeypatch):
@@ -114,16 +120,12 @@ def test_memory_that_is_not_where_it_should_be_is_left_alone(monkeypatch):
     moved.ncon, moved.nefc = found.nefc, found.ncon
     elsewhere = {"mjData": moved, "mjOption": mujoco_loop.layout("mjOption")}
     monkeypatch.setattr(mujoco_loop, "layout", elsewhere.__getitem__)
-    mujoco_loop.obstacle.cache_clear()
+    mujoco_loop.usable.cache_clear()
     try:
-        world = build(ENGINES["mujoco"], scene(accuracy="loose"))
-        world.close()
-        assert world.drive is None
-        stepped = rocked("mujoco", accuracy="loose")
-        assert stepped.driver == "python: its memory is not what Python reads"
-        assert all_but_times(stepped) == all_but_times(compiled)
+        assert not driven()
+        assert all_but_times(rocked("mujoco", accuracy="loose")) == all_but_times(compiled)
     finally:
-        mujoco_loop.obstacle.cache_clear()
+        mujoco_loop.usable.cache_clear()
 
 
 def test_a_run_has_room_for_all_that_it_writes_down():
@@ -145,7 +147,7 @@ def test_a_table_with_room_keeps_its_rows():
 @pytest.mark.parametrize("engine", [name for name in HERE if name in SCENES])
 def test_what_was_used_is_as_good_as_new(engine, monkeypatch):
     """A model or a client, whatever it was used for before, in whichever order, after a failure."""
-    kept, scenes = {"mujoco": mujoco_models, "pybullet": bullet_clients}[engine], SCENES[engine]
+    kept, scenes = {"mujoco": mujoco_models, "pybullet": bullet}[engine], SCENES[engine]
     monkeypatch.setattr(kept, "idle", type(kept.idle)())
     fresh = {}
     for name, options in scenes.items():
@@ -172,11 +174,16 @@ def test_a_release_that_knows_no_moving_surface_answers_alike(monkeypatch):
     assert mujoco_models.idle
 
 
-def test_a_run_of_many_steps_is_compiled(monkeypatch):
+@pytest.mark.parametrize(("steps", "asked"), [(10**9, [True]), (10, [True, False])])
+def test_a_run_of_many_steps_is_compiled(steps, asked, monkeypatch):
     """It begins again when the steps that may be interpreted are spent."""
     monkeypatch.setattr(Purse, "shut", False)
-    asked, drivers = partial(rocked, "mujoco", accuracy="loose"), []
-    for steps in (10**9, 10):
-        monkeypatch.setattr(parts, "PURSE", Purse(PACKAGE, steps, 0))
-        drivers.append(parts.interpreted_first(asked).driver)
-    assert drivers == [f"python: {INTERPRETED}", "compiled"]
+    monkeypatch.setattr(parts, "PURSE", Purse(PACKAGE, steps, 0))
+    found = []
+
+    def run():
+        found.append(parts.interpreted())
+        return rocked("mujoco", accuracy="loose")
+
+    parts.interpreted_first(run)
+    assert found == asked

@@ -151,10 +151,10 @@ def test_a_run_that_is_taken_up_computes_again_what_an_edit_made_stale(
 EDITS = {
     "an engine's build": ("engines/mujoco/build.py", "import_module(", "id(", MUJOCO),
     "an engine's loop": (
-        "engines/pybullet/fast.py",
-        "return before",
-        "return 2 + before",
-        {"pybullet"},
+        "engines/mujoco/loop.py",
+        "return taken",
+        "return 2 + taken",
+        MUJOCO,
     ),
     "an engine's settings": (
         *("engines/box2d/settings.py", "def __post_init__(self) -> None:"),

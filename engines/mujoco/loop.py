@@ -1,8 +1,7 @@
-"""MuJoCo stepped from a compiled loop: the library's own C function, on the memory of its objects.
+"""MuJoCo's steps taken by a compiled loop over its public `mj_step`, on the memory of its objects.
 
 The library's Python objects know their addresses, and its introspection knows what stands where.
-Both are held against what Python reads before they are used; where they disagree, or the library
-cannot be found, runs are stepped from Python.
+Both are held against what Python reads before they are used; where they disagree, Python steps.
 """
 
 import ctypes
@@ -12,23 +11,17 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import llvmlite.binding
 import numpy as np
+from numba import types
 from numpy.typing import NDArray
 
 from engines.mujoco.contact import notice, prepare, read
 from engines.mujoco.contact_state import Arrays, ContactState, Forces
-from engines.parts.compiled import (
-    SWITCHED_OFF,
-    CFunction,
-    FloatArray,
-    interpreted,
-    kernel,
-    shared,
-    switched_off,
-)
+from engines.parts.compiled import FloatArray, kernel, shared
 from engines.run.monitor import Lists, Run, onward, undecided
 
-mj_step = CFunction("mj_step", "void", "intp", "intp")
+mj_step: Any = types.ExternalFunction("mj_step", types.void(types.intp, types.intp))
 
 C_TYPES: Mapping[str, Any] = {
     "int": ctypes.c_int,
@@ -46,22 +39,10 @@ PROBE = """<mujoco><worldbody><geom type="plane" size="1 1 1"/><body pos="0 0 0.
 
 
 class Memory(NamedTuple):
-    """Where the library keeps what Python would ask it for, as arrays that share its memory.
+    """Addresses of a model and its data, and arrays that share their memory.
 
-    Attributes
-    ----------
-    model, data : int
-        Addresses of both.
-    timestep : array (1,)
-        The step [s].
-    contacts, rows : array (1,)
-        Numbers of contacts, and of rows of the solver.
-    resistance, force : array (1,)
-        Where the arena holds R and the force of each row: addresses.
-    base : int
-        The address at which the arena begins.
-    arena : array
-        It, as numbers.
+    These hold the step [s]; the numbers of contacts, and of rows of the solver; the addresses of R
+    and of the force of each row; and the arena in which both are, which begins at `base`.
     """
 
     model: int
@@ -78,7 +59,7 @@ class Memory(NamedTuple):
 @kernel
 def drive(
     holds: Sequence[ContactState],
-    lent: tuple[FloatArray, ...],
+    arrays: Arrays,
     memory: Memory,
     runs: Sequence[Run],
     lists: Lists,
@@ -89,13 +70,13 @@ def drive(
     Parameters
     ----------
     holds : sequence of ContactState (1,), updated
-    lent : tuple of ndarray, in the order of `Arrays`, written
+    arrays : Arrays, written
     memory : Memory, of the same model and data
     runs, lists
         As for `engines.run.monitor.onward`, updated.
     most : int, how many; with 0 the state is read, and nothing is taken
     """
-    held, arrays = holds[0], Arrays(*lent)
+    held = holds[0]
     read(held, arrays)
     for taken in range(most):
         step = onward(runs, lists, arrays.state)
@@ -113,82 +94,23 @@ def drive(
 def forces_in(memory: Memory) -> Forces:
     """Return what the solver says of the last step."""
     rows = memory.rows[0]
-    first_r = (memory.resistance[0] - memory.base) // 8
-    first_f = (memory.force[0] - memory.base) // 8
-    return Forces(
-        memory.contacts[0],
-        rows,
-        memory.arena[first_r : first_r + rows],
-        memory.arena[first_f : first_f + rows],
-    )
+    r = (memory.resistance[0] - memory.base) // 8
+    f = (memory.force[0] - memory.base) // 8
+    return Forces(memory.contacts[0], rows, memory.arena[r : r + rows], memory.arena[f : f + rows])
 
 
-def memory_of(model: Any, data: Any) -> Memory | None:
-    """Return the memory of a model and its data; None where it is not what it should be.
-
-    Parameters
-    ----------
-    model, data : MjModel, MjData
-        They must outlive what is returned, which has no memory of its own.
-    """
-    return None if interpreted() or obstacle() else _memory(model, data)
-
-
-@cache
-def obstacle() -> str:
-    """Say why the library's function or memory cannot be used from compiled code, if so."""
-    if switched_off():
-        return SWITCHED_OFF
-    try:
-        import llvmlite.binding
-
-        mj: Any = import_module("mujoco")
-        (library,) = Path(mj.__file__).parent.glob("*mujoco.*[!y]")
-        llvmlite.binding.load_library_permanently(str(library))
-        if llvmlite.binding.address_of_symbol("mj_step") is None:
-            return "the library has no mj_step"
-        model = mj.MjModel.from_xml_string(PROBE)
-        data = mj.MjData(model)
-        memory = _memory(model, data)
-        agrees = all(_agrees(mj, model, data, memory, dt) for dt in (0.002, 0.0007))
-    except Exception as error:  # whatever is different about another build
-        return f"the library is another build ({type(error).__name__})"
-    return "" if agrees else "its memory is not what Python reads"
-
-
-def _agrees(mj: Any, model: Any, data: Any, memory: Memory, dt: float) -> bool:
-    """Take a step, and return whether Python reads of it what stands in memory."""
-    memory.timestep[0] = dt
-    before = data.time
-    mj.mj_step(model, data)
-    forces = forces_in(memory)
-    pairs = (
-        (model.opt.timestep, dt),
-        (data.time, before + dt),
-        (data.ncon, forces.contacts),
-        (data.nefc, forces.rows),
-        (data.narena, memory.arena.nbytes),
-    )
-    arrays = ((data.efc_R, forces.resistance), (data.efc_force, forces.force))
-    return (
-        data.nefc > 0
-        and all(found == read for found, read in pairs)
-        and all(np.array_equal(found, read) for found, read in arrays)
-    )
-
-
-def _memory(model: Any, data: Any) -> Memory:
+def memory_of(model: Any, data: Any) -> Memory:
+    """Return the memory of a model and its data, which must outlive it."""
     option, inside = layout("mjOption"), layout("mjData")
     pull = model.opt.gravity.__array_interface__["data"][0]
-    at = data._address
 
     def word(name: str, kind: type[np.generic]) -> NDArray[Any]:
-        return _shared(at + getattr(inside, name).offset, 1, kind)
+        return _shared(data._address + getattr(inside, name).offset, 1, kind)
 
     base = int(word("arena", np.int64)[0])
     return Memory(
         model=model._address,
-        data=at,
+        data=data._address,
         timestep=_shared(pull - option.gravity.offset + option.timestep.offset, 1, np.float64),
         contacts=word("ncon", np.int32),
         rows=word("nefc", np.int32),
@@ -200,8 +122,7 @@ def _memory(model: Any, data: Any) -> Memory:
 
 
 def _shared(address: int, count: int, kind: type[np.generic]) -> NDArray[Any]:
-    size = count * np.dtype(kind).itemsize
-    memory: Any = (ctypes.c_char * size).from_address(address)
+    memory: Any = (ctypes.c_char * (count * np.dtype(kind).itemsize)).from_address(address)
     return np.frombuffer(memory, dtype=kind)
 
 
@@ -222,3 +143,30 @@ def _c_type(found: Any) -> Any:
     if hasattr(found, "inner_type"):
         return ctypes.c_void_p
     return C_TYPES[found.name] if found.name in C_TYPES else layout(found.name)
+
+
+@cache
+def usable() -> bool:
+    """Return whether memory holds what Python reads, after a step of a sphere in the ground."""
+    try:
+        mj: Any = import_module("mujoco")
+        (library,) = Path(mj.__file__).parent.glob("*mujoco.*[!y]")
+        llvmlite.binding.load_library_permanently(str(library))
+        model = mj.MjModel.from_xml_string(PROBE)
+        data = mj.MjData(model)
+        memory = memory_of(model, data)
+        memory.timestep[0] = 0.0007
+        mj.mj_step(model, data)
+        forces = forces_in(memory)
+    except Exception:  # whatever is different about another build
+        return False
+    pairs = (
+        (model.opt.timestep, 0.0007),
+        (data.time, 0.0007),
+        (data.ncon, forces.contacts),
+        (data.nefc, forces.rows),
+        (data.narena, memory.arena.nbytes),
+        (data.efc_R.tolist(), forces.resistance.tolist()),
+        (data.efc_force.tolist(), forces.force.tolist()),
+    )
+    return data.nefc > 0 and all(found == read for found, read in pairs)
