@@ -33,7 +33,6 @@ from studies.precision import COST
 from studies.precision.batches import batch_table
 from studies.precision.repeats import interleaved
 from studies.precision.shares import CASE, share_table
-from studies.precision.starts import start_table
 
 BUDGET_S, QUICK_BUDGET_S = 5.0, 0.15
 """Time [s] spent at most on timing one scene, in the mean of an engine's."""
@@ -70,7 +69,6 @@ def command(
     out: Out,
     engines: Engines = CORE,
     quick: bool = False,
-    starts: bool = False,
     batches: bool = False,
 ) -> int:
     """Show what a scene costs, and what each thing that it leaves out would cost and change.
@@ -81,23 +79,21 @@ def command(
         Names of engines, without a preset.
     quick
         Shorter timing: a few seconds.
-    starts
-        How long whole commands take, too: minutes, or half a minute if quick.
     batches
         What it is worth to run many scenes at once, too, with the engines that can.
     """
 
     def tabulate(_: object) -> Tables:
-        more = {"starts": start_table(quick)} if starts else {}
+        found = measured(engines, quick)
         if batches:
-            more["batches"] = batch_table(engines, quick, QUICK_BUDGET_S if quick else BUDGET_S)
-        return {**measured(engines, quick), **more}
+            found["batches"] = batch_table(engines, quick, QUICK_BUDGET_S if quick else BUDGET_S)
+        return found
 
     made = Plan(settings={"quick": quick}, tabulate=tabulate)
     return carry_out(COST, made, out, DEFAULT_RUNNING, report)
 
 
-def measured(engines: Sequence[str], quick: bool) -> Tables:
+def measured(engines: Sequence[str], quick: bool) -> dict[str, pd.DataFrame]:
     """Measure, and return the three tables."""
     budget_s = QUICK_BUDGET_S if quick else BUDGET_S
     return {
@@ -222,7 +218,6 @@ def report(folder: Path) -> str:
         "What the exact solution leaves out": reference,
     }
     asked_for = {
-        "starts": "How long a user waits, and over R, the time of `import numba, pandas`",
         "batches": "Many scenes at once and one by one, in CPU time of a step of a world",
     }
     tables |= {title: table_in(folder, name) for name, title in asked_for.items()}

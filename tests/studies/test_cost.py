@@ -15,7 +15,7 @@ from engines import ENGINES, Scene, core_engines, installed_engines
 from engines.declaration import Stepping
 from engines.run.drive import run
 from studies.measures.costs import LEAST_RUNS
-from studies.precision import batches, cost, shares, starts
+from studies.precision import batches, cost, shares
 from studies.precision.cost import (
     in_a_new_process,
     omissions,
@@ -152,15 +152,3 @@ def test_reference_is_timed_with_what_it_leaves_out():
 def test_memory_is_of_a_scene_alone():
     memory = in_a_new_process(scene_memory, "mujoco", {})
     assert math.isnan(memory) or 0 <= memory < 1e5
-
-
-def test_whole_commands_are_timed_cold_and_warm(monkeypatch):
-    monkeypatch.setattr(starts, "ASKED", {"rocking --help": "--help"})
-    monkeypatch.setattr(starts, "REPEATS", 1)
-    (line,) = starts.start_table(quick=True).to_dict("records")
-    assert line["command"] == "rocking --help"
-    assert line["cold_s"] == pytest.approx(line["cold_ratio"] * line["unit_s"], rel=1e-12)
-    assert line["warm_ratio"] > 0.0
-    monkeypatch.setattr(starts, "ASKED", {"rocking nothing": "nothing"})
-    with pytest.raises(OSError, match="nothing"):
-        starts.start_table(quick=True)

@@ -208,7 +208,7 @@ def test_no_score_beside_an_edited_table(published, monkeypatch, tmp_path, capsy
 
 def test_no_page_from_an_edited_table(published, capsys):
     root = published.parents[1]
-    for name in ("sweep/summary.csv", "overturning/engines.csv.gz", "cost/starts.csv"):
+    for name in ("sweep/summary.csv", "overturning/engines.csv.gz", "precision/scenes.csv"):
         content = (published / name).read_bytes()
         (published / name).write_bytes(content[:-9])
         refused(capsys, ["readme", "--root", root], "published", name.partition("/")[2])

@@ -50,8 +50,11 @@ def test_an_edited_table_is_one_line(study, table, edit, named, tmp_path, capsys
 
 
 def test_of_a_folder_whose_tables_have_no_picture_it_is_said(tmp_path, capsys):
-    """The published waits are a table alone."""
-    folder = shutil.copytree(PUBLISHED / "cost", tmp_path / "cost")
+    folder = tmp_path / "precision"
+    folder.mkdir()
+    for name in ("reference.csv", "provenance.json"):
+        shutil.copy(PUBLISHED / "precision" / name, folder)
+    seal(folder)
     assert run(["redraw", str(folder)]) == 0
     assert capsys.readouterr().out == f"{folder}: none of its tables has a picture\n"
 
