@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-from analytic.checks import LEAST, measurable
+from analytic.checks import LEAST, measurable, within
 
 GRAVITY = 9.81
 """g [m/s2] of every block, amplitude and record: rounded, not the standard gravity of 9.80665."""
@@ -117,7 +117,7 @@ class RigidBlock(Upright):
     (0.3218, 3.0507, 0.85)
     """
 
-    restitution: float = math.nan
+    restitution: float = None  # type: ignore[assignment]  # a number once it is made
 
     def __post_init__(self) -> None:
         Upright.__post_init__(self)
@@ -125,12 +125,12 @@ class RigidBlock(Upright):
         object.__setattr__(self, "restitution", restitution_or(self.restitution, usual))
 
 
-def restitution_or(given: float, usual: float) -> float:
-    """Return a velocity ratio as it is given, or the usual one, 0 if that is negative, for nan.
+def restitution_or(given: float | None, usual: float) -> float:
+    """Return a velocity ratio as it is given, or the usual one, 0 if that is negative, for None.
 
     Parameters
     ----------
-    given : float, a user's, or nan
+    given : float, a user's, or None
     usual : float, that of an ideally inelastic impact
 
     Raises
@@ -138,11 +138,7 @@ def restitution_or(given: float, usual: float) -> float:
     ValueError
         If the given one is outside [0, 1].
     """
-    if math.isnan(given):
-        return max(usual, 0.0)
-    if not 0.0 <= given <= 1.0:
-        raise ValueError(f"restitution is {given!r}; it must be between 0 and 1")
-    return given
+    return max(usual, 0.0) if given is None else within("restitution", given, 0.0, 1.0)
 
 
 def housner_restitution(alpha: float) -> float:

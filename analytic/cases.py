@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.checks import MOST_HALF_CYCLES
+from analytic.checks import MOST_HALF_CYCLES, whole
 from analytic.kernels.compiled import form_for, inner, kernel
 from analytic.kernels.law import FloatArray, Law
 from analytic.models import Model, find_model
@@ -18,6 +18,8 @@ from analytic.models import Model, find_model
 PART = 4096
 """Cases that a core takes at a time: enough that handing them over costs nothing, and few enough
 that no core is left with much to do when the others are done."""
+
+MOST_THREADS = 1024
 
 SolvePart = Callable[[slice, bool, FloatArray, FloatArray], None]
 """Solves a part of the cases, a slice of all: given whether the model is linear, its constants
@@ -51,6 +53,7 @@ class Cases:
         ValueError
             If a parameter is outside its range.
         """
+        count = os.cpu_count() if threads is None else whole("threads", threads, MOST_THREADS)
 
         def one(start: int) -> None:
             part = slice(start, min(start + PART, self.size))
@@ -65,7 +68,7 @@ class Cases:
             for start in starts:
                 one(start)
             return
-        with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
+        with ThreadPoolExecutor(count) as pool:
             for _ in pool.map(one, starts):
                 pass
 

@@ -48,18 +48,52 @@ def measurable(name: str, value: float) -> float:
     name, value
         As for `finite`.
     """
-    number = positive(name, value)
-    if not LEAST <= number <= MOST:
-        raise ValueError(f"{name} is {value!r}; it must be from {LEAST:g} to {MOST:g}")
+    positive(name, value)
+    return within(name, value, LEAST, MOST)
+
+
+def within(name: str, value: float, least: float, most: float) -> float:
+    """Return `value` as a float; raise ValueError unless it is a number from `least` to `most`.
+
+    Parameters
+    ----------
+    name, value
+        As for `finite`.
+    least, most : float
+    """
+    number = finite(name, value)
+    if not least <= number <= most:
+        raise ValueError(f"{name} is {value!r}; it must be from {least:g} to {most:g}")
     return number
 
 
-def whole_half_cycles(value: float) -> int:
-    """Return a number of half cycles; raise ValueError unless it is a whole one that counts."""
-    number = positive("half_cycles", value)
-    if number > MOST_HALF_CYCLES or number != int(number):
-        allowed = f"a whole number from 1 to {MOST_HALF_CYCLES:g}"
-        raise ValueError(f"half_cycles is {value!r}; it must be {allowed}")
+def sized(name: str, value: float, least: float = LEAST) -> float:
+    """Return `value` as a float; raise ValueError unless it is 0, or of a size `least` to MOST.
+
+    Parameters
+    ----------
+    name, value
+        As for `finite`.
+    least : float, optional
+    """
+    number = finite(name, value)
+    if number != 0.0 and not least <= abs(number) <= MOST:
+        raise ValueError(f"{name} is {value!r}; it must be 0, or of a size {least:.3g} to {MOST:g}")
+    return number
+
+
+def whole(name: str, value: float, most: int) -> int:
+    """Return `value` as an int; raise ValueError unless it is a whole number from 1 to `most`.
+
+    Parameters
+    ----------
+    name, value
+        As for `finite`.
+    most : int
+    """
+    number = positive(name, value)
+    if number > most or number != int(number):
+        raise ValueError(f"{name} is {value!r}; it must be a whole number from 1 to {most:g}")
     return int(number)
 
 

@@ -127,10 +127,10 @@ def sensitivities(
     >>> sensitivities(0.32, [0.4, 0.5], 2.0, 2).round(2)
     array([26.39,  0.  ])
     """
-    eta = housner_restitutions(alpha) if restitution is None else np.asarray(restitution)
+    eta = housner_restitutions(alpha) if restitution is None else np.asarray(restitution, float)
 
     def solve(stronger: float, livelier: float) -> tuple[FloatArray, NDArray[np.object_]]:
-        scaled = stronger * np.asarray(amplitude_g)
+        scaled = stronger * np.asarray(amplitude_g, float)
         return peak_ratios(
             alpha, scaled, omega_over_p, half_cycles, model, np.fmin(livelier * eta, 1.0)
         )

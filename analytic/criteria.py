@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from analytic.block import RigidBlock, Rocker
+from analytic.checks import finite, positive
 from analytic.models import find_model
 
 
@@ -32,6 +33,7 @@ def quarter_period(block: Rocker, theta: float, model: str = "exact") -> float:
     from scipy.special import ellipk, ellipkinc
 
     law = find_model(model).law(block.alpha, block.restitution)
+    theta = finite("theta", theta)
     if not 0.0 < theta < law.saddle:
         raise ValueError(f"theta is {theta!r}; it must be between 0 and {law.saddle}")
     if law.linear:
@@ -53,6 +55,7 @@ def free_amplitude(block: Rocker, theta: float, impacts: int) -> float:
     theta : float, where it is released at rest [rad], from 0 to alpha
     impacts : int, n
     """
+    theta = finite("theta", theta)
     lift = 2.0 * math.sin(block.alpha - 0.5 * theta) * math.sin(0.5 * theta)
     left = block.restitution ** (2 * impacts) * lift
     barrier = 2.0 * math.sin(0.5 * block.alpha) ** 2
@@ -78,6 +81,7 @@ def frictionless_fall(block: RigidBlock, theta: float) -> tuple[float, float]:
     """
     from scipy.integrate import quad
 
+    theta = finite("theta", theta)
     if not 0.0 < theta < block.alpha:
         raise ValueError(f"theta is {theta!r}; it must be between 0 and {block.alpha}")
     gyration = (block.width**2 + block.height**2) / 12.0
@@ -115,6 +119,7 @@ def overturning_amplitude(omega_over_p: float, half_cycles: int = 1) -> float:
     """
     if half_cycles not in (1, 2):
         raise ValueError(f"half_cycles is {half_cycles!r}; it must be 1 or 2")
+    omega_over_p = positive("omega_over_p", omega_over_p)
     sign = 1.0 if half_cycles == 1 else -1.0
 
     def excess(log_amplitude: float) -> float:

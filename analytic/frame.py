@@ -49,7 +49,7 @@ class RockingFrame(Upright):
 
     columns: int = 2
     load: float
-    restitution: float = math.nan
+    restitution: float = None  # type: ignore[assignment]  # a number once it is made
 
     def __post_init__(self) -> None:
         count = finite("columns", self.columns)

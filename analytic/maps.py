@@ -202,6 +202,8 @@ def solve_modes(
         pulse = Pulse(abs(given[1][i]), omega, int(given[3][i]))
         segment[1], segment[2], segment[3] = math.pi / omega, pulse.amplitude, omega
         modes[i], margins[i], steps[i] = pulse_mode(law, pulse, work, segment)
+        if math.isnan(margins[i]):
+            modes[i] = FAILED
 
 
 def overturning_modes(
@@ -224,7 +226,7 @@ def overturning_modes(
     alpha, amplitude_g, omega_over_p, half_cycles, model, restitution
         As in `peak_ratios`.
     threads : int, optional
-        By default the number of cores.
+        At most 1024; by default the number of cores.
 
     Returns
     -------

@@ -8,13 +8,25 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.block import GRAVITY
-from analytic.checks import finite, finite_result, measurable, positive, whole_half_cycles
+from analytic.checks import (
+    MOST_HALF_CYCLES,
+    finite,
+    finite_result,
+    measurable,
+    positive,
+    whole,
+    within,
+)
 from analytic.kernels.law import FloatArray as FloatArray
 
 SEGMENT_COLUMNS = ("start", "end", "amplitude", "omega", "phase", "offset", "slope")
 """Columns of `Motion.segments`: on [start, end] the ground acceleration is
 amplitude sin(omega (t - start) + phase) + offset + slope (t - start). A row is a sine or a straight
 line: uplifts are found for either, not for their sum."""
+
+
+MOST_PHASE = 1e6
+"""Phase of a pulse [rad] up to which floating point holds ten digits of its angle."""
 
 
 class Motion(Protocol):
@@ -57,14 +69,14 @@ class SinePulse:
     half_cycles : int
         1 for the half-sine pulse, 2 for the full-sine pulse.
     phase : float, optional
-        Phase at time zero [rad].
+        Phase at time zero [rad], at most 1e6 of either sign: of more, digits are lost.
 
     Raises
     ------
     ValueError
-        If the amplitude or the phase is not finite, omega not positive and finite, or half_cycles
-        not a positive integer; also if omega is not of a size whose square floating point holds,
-        or the displacement of the ground overflows.
+        If the amplitude is not finite, the phase beyond 1e6, omega not positive and finite, or
+        half_cycles not a positive integer; also if omega is not of a size whose square
+        floating point holds, or the displacement of the ground overflows.
 
     Examples
     --------
@@ -81,8 +93,9 @@ class SinePulse:
     def __post_init__(self) -> None:
         object.__setattr__(self, "amplitude", finite("amplitude", self.amplitude))
         object.__setattr__(self, "omega", measurable("omega", self.omega))
-        object.__setattr__(self, "phase", finite("phase", self.phase))
-        object.__setattr__(self, "half_cycles", whole_half_cycles(self.half_cycles))
+        object.__setattr__(self, "phase", within("phase", self.phase, -MOST_PHASE, MOST_PHASE))
+        cycles = whole("half_cycles", self.half_cycles, MOST_HALF_CYCLES)
+        object.__setattr__(self, "half_cycles", cycles)
         finite_result(
             "the displacement of the ground",
             self.amplitude / self.omega**2 * (self.half_cycles * math.pi),
@@ -100,7 +113,8 @@ class SinePulse:
         gravity: float = GRAVITY,
     ) -> "SinePulse":
         """Return the pulse whose amplitude is given in units of `gravity` [m/s2]."""
-        return cls(amplitude=amplitude * gravity, omega=omega, half_cycles=half_cycles, phase=phase)
+        amplitude = finite("amplitude", amplitude) * positive("gravity", gravity)
+        return cls(amplitude=amplitude, omega=omega, half_cycles=half_cycles, phase=phase)
 
     @property
     def duration(self) -> float:

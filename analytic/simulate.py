@@ -11,7 +11,7 @@ from analytic.block import RigidBlock, Rocker
 from analytic.cart import CartBlock
 from analytic.cart_motion import ridden
 from analytic.cases import law_of, pose, write_pulse
-from analytic.checks import finite
+from analytic.checks import finite, within
 from analytic.kernels.compiled import form_for, kernel, listed
 from analytic.kernels.excursions import BROKEN, OVERTURNED, TOO_LONG, End, march, workspace
 from analytic.kernels.forces import NOTHING_YET
@@ -115,10 +115,8 @@ def simulate(
             raise ValueError(f"model is {model!r}; a {type(block).__name__} has only 'exact'")
         return _other(block, motion, start, duration, times)
     law = find_model(model).law(block.alpha, block.restitution)
-    if not TOLERANCE <= tolerance <= LOOSEST:
-        allowed = f"from {TOLERANCE} to {LOOSEST}"
-        raise ValueError(f"tolerance is {tolerance!r}; it must be {allowed}")
-    exactly = accuracy(TOLERANCE if law.linear else float(tolerance))
+    tolerance = within("tolerance", tolerance, TOLERANCE, LOOSEST)
+    exactly = accuracy(TOLERANCE if law.linear else tolerance)
     until, sampled = check_window(motion, duration, times)
     begin = folded(block, law, motion, start, sampled)
     segments = scaled_segments(block, motion)
@@ -233,7 +231,7 @@ def peak_ratios(
     restitution : array_like, optional
         Velocity ratio at impacts, in [0, 1]; Housner's value by default.
     threads : int, optional
-        By default the number of cores.
+        At most 1024; by default the number of cores.
 
     Returns
     -------
@@ -329,7 +327,7 @@ def check_window(
     ValueError
         If the duration is shorter than the motion, or the times are not increasing or not finite.
     """
-    sampled = np.empty(0) if times is None else np.asarray(times, dtype=np.float64)
+    sampled = np.empty(0) if times is None else np.array(times, dtype=np.float64)
     if sampled.ndim != 1 or np.any(np.diff(sampled) < 0.0) or not np.all(np.isfinite(sampled)):
         raise ValueError("times must be a list of finite, increasing numbers")
     if duration is None:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.checks import finite
+from analytic.checks import sized
 from analytic.kernels.rest import EQUAL
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Outcome, Reason, Response
@@ -139,7 +139,7 @@ def _checked(start: tuple[float, float]) -> tuple[float, float]:
         x, v = start
     except (TypeError, ValueError):
         raise ValueError(f"start is {start!r}; it must be x [m] and x' [m/s]") from None
-    return finite("x of the start", x), finite("x' of the start", v)
+    return sized("x of the start", x), sized("x' of the start", v)
 
 
 def _follow(

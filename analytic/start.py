@@ -4,10 +4,13 @@ import math
 from collections.abc import Sequence
 
 from analytic.block import Rocker
-from analytic.checks import finite
+from analytic.checks import sized
 from analytic.kernels.law import Law, Start
 from analytic.kernels.rest import strongest_between
 from analytic.motion import FloatArray, Motion
+
+LEAST_TILT = 1e-30
+"""Tilt over alpha, below which the time to the first impact is lost in a step of the solution."""
 
 REST = (0.0, 0.0)
 """Rotation [rad] and angular velocity [rad/s] of a block at rest on its base."""
@@ -41,7 +44,10 @@ def folded(
         theta, rate = start
     except (TypeError, ValueError):
         raise ValueError(f"start is {start!r}; it must be theta [rad] and theta' [rad/s]") from None
-    theta, rate = finite("theta of the start", theta), finite("rate of the start", rate)
+    theta, rate = (
+        sized("theta of the start", theta, LEAST_TILT * block.alpha),
+        sized("rate of the start", rate),
+    )
     if abs(theta) >= 0.5 * math.pi:
         raise ValueError(f"theta of the start is {theta!r}; it must be between -pi/2 and pi/2 rad")
     balanced = abs(theta) == law.saddle and rate == 0.0

@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from types import MappingProxyType
 from typing import Any, TypeVar
 
-from analytic.checks import finite, positive
+from analytic.checks import finite, positive, sized
 from analytic.motion import SEGMENT_COLUMNS, Motion
 from engines.hints import TRUE, Hints
 from engines.layouts import Body, Layout, System, layout_of
@@ -131,7 +131,7 @@ class Scene:
         except (TypeError, ValueError):
             words = "it must be theta [rad] and theta' [rad/s]"
             raise ValueError(f"start is {start!r}; {words}") from None
-        theta, rate = finite("theta of the start", theta), finite("rate of the start", rate)
+        theta, rate = sized("theta of the start", theta), sized("rate of the start", rate)
         if not layout_of(self.system, self.density, self.depth, (theta, rate)).rocking:
             return theta, rate  # of what slides: place [m] and velocity [m/s]
         if abs(theta) >= 0.5 * math.pi:
@@ -198,12 +198,14 @@ def one_of(name: str, value: str, allowed: Sequence[str]) -> None:
     allowed : sequence of str; the message names them, and before them one that is like the value
     """
     if value not in allowed:
-        near = [
-            f", perhaps {word!r}" for word in get_close_matches(str(value), allowed, 1, LIKENESS)
-        ]
-        raise ValueError(
-            f"{name} is {value!r}{''.join(near)}; it must be one of {', '.join(allowed)}"
-        )
+        near = perhaps(value, allowed)
+        raise ValueError(f"{name} is {value!r}{near}; it must be one of {', '.join(allowed)}")
+
+
+def perhaps(value: str, allowed: Sequence[str]) -> str:
+    """Return the words that name the one of those allowed which a value is like, if one is."""
+    near = get_close_matches(str(value).lower(), allowed, 1, LIKENESS)
+    return f", perhaps {near[0]!r}" if near else ""
 
 
 def _moves(motion: Motion) -> bool:

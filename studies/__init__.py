@@ -7,7 +7,7 @@ what an answer is worth, `drawing` draws it, `page` shows all.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def respond(
 def side_by_side(
     block: System,
     motion: Motion,
-    sources: Sequence[str],
+    sources: Iterable[str],
     *,
     start: tuple[float, float] = (0.0, 0.0),
     duration: float | None = None,
@@ -95,7 +95,7 @@ def side_by_side(
     ----------
     block, motion, start
         As in `respond`.
-    sources : sequence of str
+    sources : iterable of str
         Their names, each as in `respond`.
     duration : float, optional
         Observe until this time [s]; by default the motion and 8/p of free rocking.
@@ -135,7 +135,7 @@ def side_by_side(
     from studies.kit.options import Yours
     from studies.kit.posing import Posed, refuse_endless
 
-    if isinstance(sources, str) or not sources:
+    if isinstance(sources, str) or not (sources := list(sources)):
         raise ValueError(f"sources is {sources!r}; it must be a list of one name or more")
     try:
         window = window_of(block, motion, duration)
@@ -208,6 +208,7 @@ def plot(response: Response, axes: Axes | None = None) -> Axes:
     Returns
     -------
     matplotlib.axes.Axes
+        A notebook shows those of a figure of its own as a picture.
 
     Raises
     ------
@@ -225,8 +226,11 @@ def plot(response: Response, axes: Axes | None = None) -> Axes:
     """
     from matplotlib.figure import Figure
 
+    from studies.drawing.notebook import ShownAxes
+
     history = table(response)
-    axes = axes or Figure(figsize=(7.0, 2.8), layout="constrained").subplots()
+    if axes is None:
+        axes = Figure(figsize=(7.0, 2.8), layout="constrained").add_subplot(axes_class=ShownAxes)
     (line,) = axes.plot(history["time_s"], history["theta_rad"])
     axes.axhline(0.0, color="#999999", linewidth=0.6)
     end = history["time_s"].iloc[-1]

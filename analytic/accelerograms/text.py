@@ -111,12 +111,32 @@ def number(word: str, line: int) -> float:
     ValueError
         If it is no finite number in plain digits.
     """
-    if PLAIN.fullmatch(word) and math.isfinite(value := float(word)):
-        return value
-    if is_number(word):
-        raise ValueError(f"line {line}: {shown(word)[1:-1]} must be a finite number")
-    comma = " with a decimal point" if "," in word else ""
-    raise ValueError(f"line {line}: {shown(word)} must be a number{comma}")
+    try:
+        return finite_number(word)
+    except ValueError as error:
+        said = shown(word)[1:-1] if is_number(word) else shown(word)
+        raise ValueError(f"line {line}: {said} must be {error}") from error
+
+
+def finite_number(word: str) -> float:
+    """Return the number that a word is; ValueError says what else it must be.
+
+    What is too small for floating point is not taken for 0.
+    """
+    if not is_number(word):
+        raise ValueError(f"a number{' with a decimal point' if ',' in word else ''}")
+    value = float(word)
+    if not math.isfinite(value):
+        raise ValueError("a finite number")
+    if underflows(word):
+        raise ValueError(f"0, or at least {math.ulp(0.0):g}")
+    return value
+
+
+def underflows(word: str) -> bool:
+    """Whether a word is a number other than 0 that floating point makes 0."""
+    zero = is_number(word) and float(word) == 0.0
+    return zero and re.search("[1-9]", re.split("[eE]", word)[0]) is not None
 
 
 def whole(name: str, line: int, word: str) -> int:

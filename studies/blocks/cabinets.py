@@ -136,6 +136,11 @@ def _number(word: str) -> float:
         return math.nan
 
 
+def _point(column: str, items: Sequence[Bad]) -> str:
+    comma = column != "name" and any("," in item.value for item in items)
+    return ", with a decimal point" if comma else ""
+
+
 def _said(bad: Sequence[Bad]) -> str:
     """Return what is wrong, once for all values of a column of which the same is allowed."""
     groups: dict[tuple[str, str], list[Bad]] = {}
@@ -143,7 +148,7 @@ def _said(bad: Sequence[Bad]) -> str:
         groups.setdefault((item.column, item.allowed), []).append(item)
     words = [
         f"{', '.join(f'line {item.line}: {column} is {shown(item.value)}' for item in items)}; "
-        f"it must be {allowed}"
+        f"it must be {allowed}{_point(column, items)}"
         for (column, allowed), items in groups.items()
     ]
     more = [f"{len(bad) - SHOWN} more values cannot be used"] if len(bad) > SHOWN else []

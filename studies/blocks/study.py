@@ -78,7 +78,8 @@ def command(
     scale
         Factors on the records' acceleration.
     units
-        Of the records' acceleration, where the files do not state them.
+        Of the records' acceleration: needed where a file does not state them, refused where one
+        states others.
     baseline
         Correct the records by what scipy.signal.detrend takes away: their mean (constant) or the
         line that fits them best (linear).

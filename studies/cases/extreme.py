@@ -29,8 +29,8 @@ class Extreme:
     onsets : float
         Amplitude of the pulse over the acceleration g B/H that lifts the block.
     omega_over_p, half_cycles : float, int
-    restitution : float
-        Velocity ratio of impacts; nan for Housner's. An engine's impact is its own: cases with
+    restitution : float or None
+        Velocity ratio of impacts; None for Housner's. An engine's impact is its own: cases with
         another ratio are not asked of engines.
     rest_s : float
         Least time [s] of observation after the pulse.
@@ -52,7 +52,7 @@ class Extreme:
     onsets: float = 1.2
     omega_over_p: float = 3.0
     half_cycles: int = 2
-    restitution: float = math.nan
+    restitution: float | None = None
     rest_s: float = 0.0
     density: float = 1000.0
     friction: float | None = None
@@ -63,7 +63,7 @@ class Extreme:
     def block(self) -> RigidBlock:
         """The block."""
         height = self.aspect * self.width_m
-        return RigidBlock(width=self.width_m, height=height, restitution=self.restitution)
+        return RigidBlock(width=self.width_m, height=height, restitution=self.restitution)  # type: ignore[arg-type]
 
     @property
     def motion(self) -> SinePulse:
@@ -88,7 +88,7 @@ class Extreme:
             return engine and (self.contact is None or takes_spring(asked))
         if self.step_s is not None:
             return asked.stepping
-        return not engine or math.isnan(self.restitution)
+        return not engine or self.restitution is None
 
     def options(self, source: str) -> dict[str, Any]:
         """Return the options with which a source meets the case."""

@@ -320,6 +320,7 @@ def _reduce(job: Job, response: Response) -> Row:
 
 def _beside(response: Response, exact: Response, block: System) -> dict[str, Any]:
     both = response.outcome is Outcome.ROCKED is exact.outcome
+    both = both and exact.peak_ratio > 0.0
     error = response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
     return {
         "error": _slip_error(response, exact) if exact.slips else error,

@@ -17,6 +17,7 @@ from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset, Stepping
 from engines.parts.script import Script
 from engines.run import ground
+from engines.scene import perhaps
 from engines.watching.sliding import LEAST_SLIP, SLIP_RATE
 from studies.cases.paper import free_rocking_window
 from studies.kit.arguments import BadInputError, Place, Positive, Step, refuse_both
@@ -133,7 +134,7 @@ def _asked(engine: str, preset: str | None) -> tuple[Engine, Preset]:
     able = [name for name, engine in ENGINES.items() if engine.script is not None]
     if name not in able:
         words = f"it must be one that can be written out: {', '.join(able)}"
-        raise BadInputError(f"--engine is {engine!r}; {words}")
+        raise BadInputError(f"--engine is {engine!r}{perhaps(name, able)}; {words}")
     if colon and preset is not None:
         words = "it may be given only where --engine has none after a colon"
         raise BadInputError(f"--preset is {preset!r}; {words}")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import re
 import shutil
 import signal
 import sys
@@ -19,7 +20,7 @@ from studies.kit import refusing, signals
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from cyclopts import App
+    from cyclopts import App, UnknownOptionError
 
     from studies.kit.study import Study
 
@@ -71,11 +72,23 @@ def run(studies: Sequence[Study], arguments: list[str]) -> int:
         return 128 + signal.SIGPIPE
     except (OSError, ImportError) as error:
         return refusing.refuse(str(error))
+    except (ArithmeticError, MemoryError, ValueError) as error:
+        if REFUSAL.match(str(error)):
+            return refusing.refuse(str(error))
+        # any other ValueError is an error of the program
+        if type(error) is ValueError and str(error) != "math domain error":
+            raise
+        words = "the numbers given are too small, too large or too many to compute with"
+        return refusing.refuse(f"{words} ({refusing.one_line(error)})")
     return code
 
 
+REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
+"""A refusal of a value, whoever finds it: "width is 0; it must be positive"."""
+
+
 def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
-    from cyclopts import CycloptsError
+    from cyclopts import CycloptsError, UnknownOptionError
 
     from studies.kit.arguments import BadInputError
     from studies.kit.journal import FolderError
@@ -89,8 +102,8 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
         return refusing.refuse(f"{arguments[0]} was retired in 0.3, see the changelog")
     for before, argument in itertools.pairwise(["COMMAND", *arguments]):
         name, equals, value = argument.partition("=")
-        if not argument or (name.startswith("--") and equals and not value):
-            return refusing.refuse(f"{name or before} is empty; it must be given")
+        if not argument.strip() or (name.startswith("--") and equals and not value.strip()):
+            return refusing.refuse(f"{name.strip() or before} is empty; it must be given")
     try:
         code = make_app(studies)(
             arguments,
@@ -99,9 +112,30 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
             verbose=False,
             result_action="return_value",
         )
+    except UnknownOptionError as error:
+        return refusing.refuse(_unknown_option(error))
     except (CycloptsError, BadInputError, FolderError) as error:
         return refusing.refuse(str(error))
     return code if isinstance(code, int) else 0
+
+
+def _unknown_option(error: UnknownOptionError) -> str:
+    """Return the refusal of an option that a command does not have, with the one it is like."""
+    from difflib import get_close_matches
+
+    given = (error.token.keyword or error.token.value).partition("=")[0]
+    options = [
+        name for each in error.argument_collection for name in each.names if name[:2] == "--"
+    ]
+    words = {name.lstrip("-"): name for name in options}
+    near = [words[word] for word in get_close_matches(given.lstrip("-"), words, 1, LIKENESS)]
+    command = " ".join(error.command_chain or ())
+    able = f"did you mean {near[0]}?" if near else f"it takes {', '.join(options)}"
+    return f"{given} is no option of {command or 'rocking'}; {able}"
+
+
+LIKENESS = 0.7
+"""How like an option must be to be named as what was meant, its dashes left aside."""
 
 
 class Postponed(ModuleType):

@@ -10,6 +10,7 @@ from typing import Annotated, Any, TypeVar, get_args
 
 from cyclopts import Parameter, Token
 
+from analytic.accelerograms.text import finite_number, underflows
 from studies.cases.refusal import BadInputError as BadInputError
 
 T = TypeVar("T")
@@ -46,7 +47,12 @@ def _read(allowed: str, convert: Callable[[type, str], Any]) -> Any:
         except ValueError as error:
             # an argument that is not an option has no keyword
             name = token.keyword or "FOLDER"
-            raise BadInputError(f"{name} is {token.value!r}; it must be {allowed}") from error
+            beside = ", with a decimal point" if type_ is float and "," in token.value else ""
+            if underflows(token.value):
+                beside = f", and no smaller than {math.ulp(0.0):g} unless 0"
+            raise BadInputError(
+                f"{name} is {token.value!r}; it must be {allowed}{beside}"
+            ) from error
 
     return Parameter(converter=read, n_tokens=1, allow_leading_hyphen=True)
 
@@ -55,16 +61,15 @@ def _number(allowed: str, least: float, most: float = LARGEST) -> Any:
     """Return what makes an argument take a number from `least` to `most`."""
 
     def convert(type_: type, text: str) -> Any:
-        # Python also reads 1_000 and the digits of every script
-        if not text.isascii() or "_" in text or not least <= (value := type_(text)) <= most:
+        if not least <= finite_number(text) <= most:
             raise ValueError(text)
-        return value
+        return type_(text)
 
     return _read(allowed, convert)
 
 
 def _path(_: type, text: str) -> Path:
-    if not text or text.startswith("-") or "\0" in text:
+    if not text.strip() or text.startswith("-") or "\0" in text:
         raise ValueError(text)
     return Path(text)
 

@@ -9,6 +9,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from engines import ENGINES, core_engines
+from engines.scene import perhaps
 from studies.kit.arguments import BadInputError, refuse_repeats
 from studies.sources.registry import (
     GROUPS,
@@ -40,8 +41,8 @@ def _check_sources(_: type, names: Sequence[str] | None) -> None:
 def _check_engines(_: type, names: Sequence[str] | None) -> None:
     for name in names or ():
         if name not in ENGINES:
-            among = ", ".join(ENGINES)
-            raise BadInputError(f"--engines is {name!r}; it must be among {among}")
+            among = f"it must be among {', '.join(ENGINES)}"
+            raise BadInputError(f"--engines is {name!r}{perhaps(name, list(ENGINES))}; {among}")
     if names is not None:  # they are given
         refuse_repeats("--engines", names)
 

@@ -9,9 +9,11 @@ from typing import Annotated, Literal, NamedTuple
 from cyclopts import Parameter
 
 from analytic.block import GRAVITY
+from analytic.checks import LEAST, MOST
 from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.simulate import strongest
+from analytic.start import LEAST_TILT
 from engines.layouts import System
 from studies.cases.accelerograms import Baseline, Units, read_record
 from studies.cases.paper import PULSES
@@ -70,7 +72,8 @@ class Excitation:
         A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, or
         a table of time [s] and acceleration. It is straight between its samples.
     units
-        Of the record's acceleration, where the file does not state them; g is 9.81 m/s².
+        Of the record's acceleration: needed where the file does not state them, refused where it
+        states others. g is 9.81 m/s².
     scale
         Factor on the record's acceleration.
     pga
@@ -165,8 +168,14 @@ class Excitation:
                 f"--tilt is {tilt:g}; it must lie between -{side} and {side} {unit}, "
                 f"where the side of the block lies on the ground{meant}"
             )
-        if not math.isfinite(rate * rate):
-            raise BadInputError(f"--rate is {self.rate:g}; it must be less, its energy overflows")
+        starts = (
+            ("tilt", self.tilt, theta, LEAST_TILT * block.alpha),
+            ("rate", self.rate, rate, LEAST),
+        )
+        for name, given, value, least in starts:
+            if given and not least <= abs(value) <= MOST:
+                allowed = f"0, or of a size {least:.3g} to {MOST:g} in rad and s"
+                raise BadInputError(f"--{name} is {given:g}; it must be {allowed}")
         if abs(theta) == block.alpha and rate == 0.0 == strongest(motion):
             raise BadInputError(
                 f"--tilt is {self.tilt:g} and nothing moves; it must not be where a block at rest "

@@ -31,13 +31,13 @@ COSINE = 0.5 * math.pi
 """Phase [rad] of a cosine."""
 
 
-def block_of(alpha: float, p: float, restitution: float = math.nan) -> RigidBlock:
+def block_of(alpha: float, p: float, restitution: float | None = None) -> RigidBlock:
     """Return the block of a slenderness [rad] and a frequency parameter [rad/s]."""
     diagonal = 1.5 * GRAVITY / p**2
     return RigidBlock(
         width=diagonal * math.sin(alpha),
         height=diagonal * math.cos(alpha),
-        restitution=restitution,
+        restitution=restitution,  # type: ignore[arg-type]
     )
 
 

@@ -84,7 +84,7 @@ class Problem:
     @property
     def ideal(self) -> bool:
         """Whether the velocity ratio is that of an ideally inelastic impact, as in an engine."""
-        plain = replace(self.block, restitution=math.nan)
+        plain = replace(self.block, restitution=None)  # type: ignore[arg-type]
         return math.isclose(self.block.restitution, plain.restitution, rel_tol=1e-12)
 
 

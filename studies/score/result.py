@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
+from analytic.accelerograms.text import finite_number
 from analytic.response import Outcome
 from engines.declaration import Engine
 from studies.kit import provenance
@@ -73,7 +74,7 @@ def required(text: str, engine: Engine) -> Requirement:
     preset, colon, measure = name.rpartition(":")
     presets = [use.name for use in engine.presets]
     try:
-        bound = float(number)
+        bound = finite_number(number)
     except ValueError:
         bound = math.nan
     known = measure in MEASURES and preset in (presets if colon else [""])

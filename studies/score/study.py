@@ -12,7 +12,15 @@ from cyclopts import Parameter
 
 from analytic.response import Response
 from engines import ENGINES, Scene
-from studies.kit.arguments import BadInputError, Out, Place, check_writable, several_or_none
+from engines.scene import perhaps
+from studies.kit.arguments import (
+    BadInputError,
+    Out,
+    Place,
+    check_writable,
+    refuse_repeats,
+    several_or_none,
+)
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
@@ -82,6 +90,8 @@ def command(
     declared = ENGINES[known(engine)]
     # what cannot be held against it is refused now, and not after the last run
     requirements = [required(text, declared) for text in require or ()]
+    if require is not None:
+        refuse_repeats("--require", [f"{each.preset}:{each.measure}" for each in requirements])
     earlier = against and read(against, declared)
     published()
     if json:
@@ -112,7 +122,8 @@ def known(engine: str) -> str:
         return engine
     if ":" not in engine:
         words = f"{', '.join(ENGINES)}, MODULE:ENGINE or MODULE:build"
-        raise BadInputError(f"ENGINE is {engine!r}; it must be one of {words}")
+        near = perhaps(engine, list(ENGINES))
+        raise BadInputError(f"ENGINE is {engine!r}{near}; it must be one of {words}")
     sys.path.insert(0, str(Path.cwd()))
     if problem := problem_elsewhere(engine):
         raise BadInputError(f"ENGINE: {problem}")

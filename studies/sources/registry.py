@@ -6,6 +6,9 @@ from dataclasses import dataclass, fields, replace
 from functools import partial
 from typing import Any, Literal, NamedTuple, cast
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from analytic import MODELS, integrate, simulate
 from analytic.cart import CartBlock
 from analytic.cylinder import RollingCylinder
@@ -17,7 +20,7 @@ from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import Ability, System, layout_of
 from engines.parts.compiled import interpreted_first
 from engines.registry import OWN, VARIANTS
-from engines.scene import Scene, one_of
+from engines.scene import Scene, one_of, perhaps
 from studies.sources.rolling import rolled, space_scene
 from studies.sources.scipy_peers import solve_ivp_response
 
@@ -189,7 +192,7 @@ def scene_of(
     motion: Motion,
     preset: str | None,
     *,
-    times: FloatArray | None = None,
+    times: ArrayLike | None = None,
     **options: Any,
 ) -> Scene:
     """Return the scene that an engine is asked about.
@@ -200,7 +203,7 @@ def scene_of(
     motion : Motion
     preset : str or None
         Name of one of the engine's presets; None for the best that the scene allows.
-    times : ndarray, shape (n,), optional
+    times : array_like, shape (n,), optional
         Increasing ground times [s] of the history.
     **options
         What else a `Scene` takes, by name and in its units: `duration` [s], `step` (p dt),
@@ -214,7 +217,7 @@ def scene_of(
     allowed = [item.name for item in fields(Scene) if item.name not in NOT_OPTIONS]
     for name in options:
         one_of("option", name, allowed)
-    sampled = None if times is None else times.tolist()
+    sampled = None if times is None else np.asarray(times, dtype=np.float64).tolist()
     return Scene(system=block, motion=motion, preset=preset, times=sampled, **options)
 
 
@@ -258,8 +261,13 @@ def resolve(name: str) -> Source:
     """
     plain, colon, preset = name.partition(":")
     source = SOURCES.get(plain)
-    if source is None or (colon and preset not in presets_of(source)):
-        raise UnknownSourceError(f"source is {name!r}; it must be one of {allowed()}")
+    if source is None:
+        near = perhaps(name, [f"{known}{colon}{preset}" for known in SOURCES])
+        raise UnknownSourceError(f"source is {name!r}{near}; it must be one of {allowed()}")
+    if colon and preset not in presets_of(source):
+        able = [f"{plain}:{own}" for own in presets_of(source)]
+        words = f"one of {', '.join(able)}" if able else f"{plain} alone, which is no engine"
+        raise UnknownSourceError(f"source is {name!r}{perhaps(name, able)}; it must be {words}")
     if not colon:
         return replace(source, name=name)
     call = partial(source.call, preset=preset)

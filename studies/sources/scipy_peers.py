@@ -18,7 +18,7 @@ from analytic.kernels.excursions import BROKEN
 from analytic.kernels.rest import after_impact, is_finite, next_uplift
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
-from analytic.simulate import FAILURES, scaled_segments
+from analytic.simulate import FAILURES, check_window, scaled_segments
 from analytic.start import REST, folded
 
 MOST_EXCURSIONS = 2000
@@ -104,11 +104,11 @@ class _March:
         self.method, self.rtol = method, rtol
         self.p, self.alpha = block.p, block.alpha
         self.law = MODELS["exact"].law(block.alpha, block.restitution)
-        self.start = folded(block, self.law, motion, start, () if times is None else times)
+        until, self.times = check_window(motion, duration, times)
+        self.start = folded(block, self.law, motion, start, self.times)
         self.segments = scaled_segments(block, motion)
         self.moving = float(self.segments[-1, 1])
-        self.until = math.inf if duration is None else duration * block.p
-        self.times = np.empty(0) if times is None else times
+        self.until = math.inf if duration is None else until * block.p
         self.samples = np.zeros((2, self.times.size))
         self.recorded, self.end = times is not None, self.until
         self.impacts: list[Impact] = []

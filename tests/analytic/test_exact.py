@@ -25,7 +25,7 @@ def table(name):
 
 
 def case_of(row):
-    restitution = float(row.get("restitution") or "nan")
+    restitution = float(row["restitution"]) if row.get("restitution") else None
     block = RigidBlock(width=row["width"], height=row["height"], restitution=restitution)
     asked = {name: row[name] for name in ("amplitude", "omega", "half_cycles")}
     return block, SinePulse(**asked)

@@ -45,6 +45,13 @@ def test_outcomes_are_those_of_the_other_kernel(model, half_cycles):
     assert set(named) == {Outcome.ROCKED, Outcome.AT_REST, Outcome.OVERTURNED}
 
 
+@pytest.mark.parametrize("amplitude", [1e78, 5e163])
+def test_what_no_number_tells_of_has_failed(amplitude):
+    """The margin of this case is nan; its mode said that it survives."""
+    found = overturning_modes(0.76, amplitude, 0.12, 1)
+    assert (int(found.mode), peak_ratios(0.76, amplitude, 0.12, 1)[1]) == (FAILED, Outcome.FAILED)
+
+
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("half_cycles", [12, 16, 31, 200])
 def test_long_pulses_are_solved_as_short_ones(model, half_cycles):

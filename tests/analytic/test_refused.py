@@ -4,6 +4,7 @@ import math
 import re
 from functools import partial
 
+import numpy as np
 import pytest
 from given import BLOCK, G
 
@@ -24,11 +25,18 @@ from analytic import (
     overturning_modes,
     peak_ratios,
     ricker,
+    sensitivities,
     simulate,
 )
-from analytic.criteria import frictionless_fall, overturning_amplitude
+from analytic.criteria import (
+    free_amplitude,
+    frictionless_fall,
+    overturning_amplitude,
+    quarter_period,
+)
 from analytic.orbits import orbit_limits
 from engines import Scene
+from studies import respond
 
 INF, NAN = math.inf, math.nan
 HALF_SINE = SinePulse(amplitude=0.4 * G, omega=2.0 * math.pi)
@@ -68,13 +76,13 @@ WRONG = {
         "width": (*NO_SIZE, 5e-324),
         "height": (*NO_SIZE, 1e308),
         "gravity": (*NO_SIZE, 1e-310),
-        "restitution": (-0.1, 1.1, INF),
+        "restitution": (-0.1, 1.1, INF, NAN),
     },
     RockingFrame: {
         "columns": (1, 2.5),
         "load": (0.0, -1.0),
         "width": (0.0,),
-        "restitution": (1.1,),
+        "restitution": (1.1, NAN),
     },
     CartBlock: {"mass_ratio": (0.0, 1.0), "stiffness": (-1.0,), "width": (INF,)},
     SlidingBlock: {"friction": (2.0, 0.0)},
@@ -82,7 +90,7 @@ WRONG = {
     SinePulse: {
         "amplitude": (NAN,),
         "omega": (0, -2, 1e-308, 1e200),
-        "phase": (INF,),
+        "phase": (INF, 1.1e6, -1e17),
         "half_cycles": (0, 1.5, 10**16),
     },
     Record: {"dt": (0.0, NAN, 1e200, 1e-320, 1e308)},
@@ -103,9 +111,15 @@ WRONG = {
         "half_cycles": (1.5,),
         "restitution": (1.5,),
         "model": ("linear",),
+        "threads": (0, 2.5, 1e9),
     },
-    overturning_modes: {"alpha": (0.0,), "omega_over_p": (0.0,), "half_cycles": (0.5,)},
-    overturning_amplitude: {"half_cycles": (3,)},
+    overturning_modes: {
+        "alpha": (0.0,),
+        "omega_over_p": (0.0,),
+        "half_cycles": (0.5,),
+        "threads": (0, -1),
+    },
+    overturning_amplitude: {"half_cycles": (3,), "omega_over_p": (NAN,)},
     first_mode: {"amplitude_g": (NAN,), "friction": (0.0,), "aspect": (-2.0,)},
     orbit_limits: {"restitution": (1.0,), "omega_over_p": (0.0,), "n": (2,)},
     frictionless_fall: {"theta": (BLOCK.alpha,)},
@@ -171,12 +185,63 @@ def test_what_cannot_be_together_is_refused_in_one_line(ask, change, named):
         (0.1, "start is 0.1; it must be theta"),
         ((0.1, 0.2, 0.3), "it must be theta"),
         (("far", 0.0), "theta of the start is 'far'"),
+        ((0.0, 1e-300), "rate of the start is 1e-300; it must be 0, or of a size 1e-150 to"),
+        ((0.0, -5e-324), "rate of the start is -5e-324"),
+        ((1e-160, 0.0), "theta of the start is 1e-160; it must be 0, or of a size"),
     ],
 )
 def test_bad_starts_are_refused_everywhere_in_the_same_words(ask, start, named):
     body = "system" if ask is Scene else "block"
     for motion in (Still(), SinePulse(amplitude=0.0, omega=3.0)):
         refuses(partial(ask, **{body: BLOCK}, motion=motion, start=start), named)
+
+
+@pytest.mark.parametrize("start", [(0.0, 1e-310), (0.0, 1e300), (1e300, 0.0)])
+def test_a_slide_whose_start_floating_point_does_not_square_is_refused(start):
+    refuses(partial(simulate, BOX, HALF_SINE, start=start), " of the start is ")
+
+
+def test_a_tilt_whose_first_impact_no_step_sees_is_refused():
+    """From 1e-100 of alpha the block rocked up to 1.8 of it."""
+    still = {"motion": Still(), "duration": 3.0}
+    kept = simulate(BLOCK, start=(1e-30 * BLOCK.alpha, 0.0), **still)
+    assert kept.peak_ratio == pytest.approx(1e-30, rel=1e-12)
+    refuses(partial(simulate, BLOCK, start=(1e-31 * BLOCK.alpha, 0.0), **still), "theta of the")
+
+
+SINGLE = np.float32(0.7)
+"""A number of single precision."""
+
+
+def test_a_number_of_single_precision_makes_nothing_else_single():
+    assert isinstance(RigidBlock(**SIZE, restitution=SINGLE).restitution, float)
+    assert RigidBlock(**SIZE, restitution=None).restitution == BLOCK.restitution
+    frame = RockingFrame(**SIZE, load=1.0, restitution=SINGLE)
+    assert (type(frame.restitution), type(frame.load)) == (float, float)
+    wide = float(SINGLE)
+    pulses = [SinePulse.in_g(number, omega=6.0) for number in (SINGLE, wide)]
+    assert pulses[0].amplitude == pulses[1].amplitude
+    small = np.float32(0.07)
+    for ask in (
+        overturning_amplitude,
+        partial(quarter_period, BLOCK),
+        partial(frictionless_fall, BLOCK),
+        partial(free_amplitude, BLOCK, impacts=2),
+    ):
+        assert ask(small) == ask(float(small))
+    eta = np.array([SINGLE])
+    found = sensitivities(0.32, np.array([0.4], np.float32), 2.0, 2, restitution=eta)
+    assert found == sensitivities(0.32, float(np.float32(0.4)), 2.0, 2, restitution=wide)
+
+
+def test_the_times_of_a_history_are_its_own():
+    for source in ("exact", "rk4", "rk45", "pymunk:fixed"):
+        times = np.array([0.0, 0.1, 0.2])
+        history = respond(source, BLOCK, HALF_SINE, times=times).history
+        times[:] = -1.0
+        np.testing.assert_array_equal(history.time, [0.0, 0.1, 0.2])
+        again = respond(source, BLOCK, HALF_SINE, times=[0.0, 0.1, 0.2]).history
+        np.testing.assert_array_equal(again.theta, history.theta)
 
 
 def test_a_record_of_which_nothing_is_left_is_refused():

@@ -3,9 +3,10 @@
 import json
 import math
 
+import numpy as np
 import pandas as pd
 import pytest
-from commanding import CASE, compared, python
+from commanding import CASE, compared, python, refused
 from given import BLOCK
 
 from analytic import SinePulse, Still, simulate
@@ -177,6 +178,30 @@ def test_a_failed_row_is_named_and_the_exit_code_is_1(monkeypatch, capsys, tmp_p
     assert len(failed) == 240
     assert set(failed["peak_ratio"]) == {"nan"}
     assert set(failed["message"]) == {"it never converged"}
+
+
+BY_NUMBERS = [
+    *(ZeroDivisionError("float division"), OverflowError(34, "too large"), FloatingPointError()),
+    *(MemoryError(), np.linalg.LinAlgError("singular"), ValueError("math domain error")),
+    ValueError("samples[3] is inf; it must be a finite number"),
+]
+BY_MISTAKE = [TypeError("x"), KeyError("x"), AttributeError("x"), ValueError("shapes differ")]
+
+
+@pytest.mark.parametrize("error", [*BY_NUMBERS, *BY_MISTAKE], ids=repr)
+def test_what_arithmetic_raises_is_one_line_and_what_a_mistake_does_is_not(
+    error, monkeypatch, capsys
+):
+    def broken(*_, **__):
+        raise error
+
+    monkeypatch.setattr("studies.compare.study.compare", broken)
+    line = ["compare", *CASE, "--sources", "exact"]
+    if error in BY_MISTAKE:
+        with pytest.raises(type(error)):
+            run(line)
+    else:
+        refused(capsys, line, str(error) or type(error).__name__)
 
 
 def test_a_sweep_through_the_command_line(tmp_path, capsys):

@@ -18,6 +18,12 @@ compare CASE --friction -1 | --friction is '-1'; it must be a finite number, 0 o
 compare CASE --friction nan | --friction is 'nan' | 0 or more
 compare CASE --friction 1_0 | --friction is '1_0' | 0 or more
 compare CASE --tilt nan | --tilt is 'nan' | finite
+compare CASE --rate 1e-400 | --rate is '1e-400'; it must be a finite number, and no smaller than
+compare CASE --rate 1e-324 | --rate is '1e-324' | no smaller
+compare CASE --friction 1e-400 | --friction is '1e-400' | 0 or more, and no smaller than
+compare CASE --tilt 0,5 | --tilt is '0,5'; it must be a finite number, with a decimal point
+blocks list.csv --record X.AT2 --scale 1 0,5 --out DIR | --scale is '0,5' | decimal point
+blocks comma.csv --record X.AT2 --out DIR | width is '0,5'; it must be from | with a decimal point
 compare CASE --rate fast | --rate is 'fast' | finite
 compare CASE --phase inf | --phase is 'inf' | finite
 compare CASE --jobs 0 | --jobs is '0' | positive whole number
@@ -60,6 +66,17 @@ blocks list.csv --record X.AT2 --baseline cubic --out DIR | --baseline is 'cubic
 # who is asked
 compare CASE --sources exact bullet | --sources | 'bullet' | modified
 compare CASE --sources mujoco:best | --sources | 'mujoco:best' | naive
+compare CASE --sources mujoco:fixd | 'mujoco:fixd', perhaps 'mujoco:fixed'; it must be one of mujoco
+compare CASE --sources mujuco | 'mujuco', perhaps 'mujoco'; it must be one of exact
+compare CASE --sources MuJoCo:fixed | 'MuJoCo:fixed', perhaps 'mujoco:fixed'
+compare CASE --sources box2d:error-controlled | must be one of box2d:naive, box2d:
+compare CASE --sources exact:fixed | 'exact:fixed'; it must be exact alone
+contact --out DIR --engines mujuco | --engines is 'mujuco', perhaps 'mujoco'
+export CASE --out DIR --engine mujuco:fixed | perhaps 'mujoco'
+score mujuco --out DIR | ENGINE is 'mujuco', perhaps 'mujoco'
+score pymunk --out DIR --require outcomes=٣ | --require is 'outcomes=٣'; it must be one of outcomes
+score pymunk --out DIR --require p90=1 p90=2 | --require names | :p90' twice
+contact --out DIR --sources exact | --sources is no option of contact; it takes --out, --engines
 compare CASE --sources exact exact | --sources names 'exact' twice | once
 compare CASE --sources | --sources is empty | housner
 sweep --sources nobody --out DIR | --sources | 'nobody' | mujoco
@@ -73,7 +90,11 @@ x --version | --version | alone
 
 # what happens to a block
 compare CASE --duration 0.5 | --duration is 0.5 | 0.999998 s
-compare CASE --rate 1e308 | --rate is 1e+308 | less
+compare CASE --rate 1e-300 | --rate is 1e-300; it must be 0, or of a size 1e-150 to
+compare BLOCK --tilt 1e-100 | --tilt is 1e-100; it must be 0, or of a size
+compare CASE --phase 1e17 | --phase is 1e+17; it must be from -1e+06 to 1e+06
+compare CASE --scene slide --friction 0.1 --phase 1e30 | --phase is 1e+30
+compare CASE --rate 1e308 | --rate is 1e+308 | 1e+150
 compare CASE --tilt -4.9 | --tilt is -4.9 | between -4.88
 compare CASE --tilt 90 --degrees | --tilt is 90 | between -90 and 90
 animate BLOCK --tilt 5 --out film.gif | --tilt | between
@@ -125,7 +146,7 @@ advise --engine mujoco --dt 0.002 --error 0.1 | --error is 0.1; it may be given 
 advise --engine mujoco --dt 0.002 --out DIR | --out is DIR; it may be given only without --dt
 
 # other scenes, exported or shown
-export CASE --out DIR --engine bullet | --engine is 'bullet'; it must be one that can be
+export CASE --out DIR --engine bullet | --engine is 'bullet', perhaps 'pybullet'; it must be
 export CASE --out DIR --engine mujoco --preset landing | --preset is 'landing'; it must have
 export CASE --out DIR --engine mujoco:landing | its preset must have equal steps: naive, naive-base
 export CASE --out DIR --engine mujoco:naive --preset fixed | only where --engine has none
@@ -149,6 +170,8 @@ compare CASE --plot a.txt | --plot is 'a.txt' | .png
 compare CASE --plot /nowhere/a.png | --plot is '/nowhere/a.png' | written
 sweep --out /dev/null/results | --out is '/dev/null/results' | folder
 contact --out '' | --out is empty | given
+sweep --out ' ' | --out is empty | given
+report --out '	' | --out is empty | given
 report --out /dev/null | --out is '/dev/null' | folder
 cost --out /dev/null | --out is '/dev/null' | folder
 redraw DIR | FOLDER | DIR | sweep.csv
@@ -191,6 +214,7 @@ def place(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "list.csv").write_text("name,width,height\nA,0.5,1.5\n")
     (tmp_path / "X.AT2").write_text(AT2["series"])
+    (tmp_path / "comma.csv").write_text("name;width;height\nA;0,5;1,5\n")
     (tmp_path / "still.csv").write_text("time_s,acceleration\n0,0\n0.1,0\n0.2,0\n")
     return tmp_path
 

@@ -56,6 +56,7 @@ def test_a_history_is_a_table_and_a_picture(source):
     np.testing.assert_array_equal(kept["theta_rad"], response.history.theta)
     assert kept["theta_rad"].abs().max() <= response.peak_ratio * BLOCK.alpha * (1.0 + 1e-12)
     axes = plot(response)
+    assert axes._repr_png_().startswith(b"\x89PNG")
     line, _, ticks = axes.lines
     np.testing.assert_array_equal(line.get_ydata(), kept["theta_rad"])
     assert len(ticks.get_xdata()) == sum(i.time <= 2.0 for i in response.impacts)

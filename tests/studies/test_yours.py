@@ -101,7 +101,7 @@ def test_an_answer_that_hangs_on_a_hundredth_of_the_amplitude_says_so(kind, tmp_
 def test_side_by_side_is_what_compare_tells(capsys):
     names = ["exact", "housner", "mujoco:fixed"]
     _, rows = compared(capsys, *CASE, "--friction", "0.8", "--sources", *names)
-    table = side_by_side(BLOCK, PULSE, names, friction=0.8)
+    table = side_by_side(BLOCK, PULSE, (name for name in names), friction=0.8)
     assert list(table["source"]) == names
     assert list(table.columns) == list(rows["exact"])
     for row in table.drop(columns="wall_s").to_dict("records"):
@@ -118,7 +118,7 @@ def test_side_by_side_is_what_compare_tells(capsys):
     [
         ({"sources": []}, r"sources is \[\]; it must be a list of one name or more"),
         ({"sources": "exact"}, "sources is 'exact'; it must be a list"),
-        ({"sources": ["exat"]}, "source is 'exat'; it must be one of exact"),
+        ({"sources": ["exat"]}, "source is 'exat', perhaps 'exact'; it must be one of exact"),
         ({"sources": ["mujoco"], "dt": 0.002}, "^dt is 0.002; it must come with equal steps"),
         ({"sources": ["rk4"], "dt": -1.0}, "^dt is -1; it must be"),
         ({"sources": ["rk4"], "friction": 1.0}, "^friction is 1; it must come with an engine"),
