@@ -12,7 +12,6 @@ from studies import (
     estimate,
     export,
     free,
-    harmonic,
     histories,
     linearizations,
     literature,
@@ -32,7 +31,7 @@ from studies.kit.study import Chapter, Study
 STUDIES: tuple[Study, ...] = (
     *(advise.STUDY, compare.STUDY, blocks.STUDY, animate.STUDY, export.STUDY, sweep.STUDY),
     *(defaults.STUDY, histories.STUDY, linearizations.STUDY, free.STUDY, scenes.STUDY),
-    *(harmonic.STUDY, literature.STUDY, validate.STUDY, advise.STEPS, estimate.STUDY),
+    *(literature.STUDY, validate.STUDY, advise.STEPS, estimate.STUDY),
     *(precision.STUDY, precision.COST, contact.STUDY, symptoms.STUDY, restitution.STUDY),
     *(stability.STUDY, overturning.STUDY, validity.STUDY, ensemble.STUDY),
     *(score.STUDY, doctor.STUDY),

@@ -17,7 +17,6 @@ ARGUMENTS = {
     "histories": ("--figure", "4", "--sources", "exact", "moreau"),
     "free": ("--quick", "--sources", "exact", "moreau"),
     "scenes": ("--quick", "--sources", "exact", "moreau"),
-    "harmonic": ("--quick", "--sources", "moreau"),
     "literature": ("--sources", "moreau"),
     "validate": ("--cases", "8", "--sources", "moreau"),
     "estimate": ("--cases", "3", "--sources", "moreau"),

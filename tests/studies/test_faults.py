@@ -22,7 +22,7 @@ ASKING = [
     *(
         pytest.param(name, marks=pytest.mark.slow)
         for name in (
-            *("contact", "validity", "stability", "harmonic", "sweep"),
+            *("contact", "validity", "stability", "sweep"),
             *("ensemble", "overturning"),
         )
     ),

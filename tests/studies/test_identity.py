@@ -25,7 +25,7 @@ from studies.sources.registry import Source
 from studies.stability import study as stability
 
 AT_ONCE = ("advise", "linearizations", "restitution", "symptoms")
-DEAR = ("harmonic", "overturning", "precision", "scenes")
+DEAR = ("overturning", "precision", "scenes")
 """Studies that take many seconds before their first row, or for one of each source."""
 RESUMABLE = [
     pytest.param(study, chapter, id=chapter.folder, marks=[pytest.mark.slow] * (study.name in DEAR))

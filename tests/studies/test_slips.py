@@ -13,13 +13,12 @@ EXACT = ["--sources", "exact"]
 
 @pytest.mark.parametrize("name", ["width", "height"])
 @pytest.mark.parametrize("millimetres", [300, 200.001])
-@pytest.mark.parametrize("command", ["compare", "export", "animate", "advise", "harmonic"])
+@pytest.mark.parametrize("command", ["compare", "export", "animate", "advise"])
 def test_a_size_in_millimetres_is_asked_about(name, millimetres, command, tmp_path, capsys):
     more = {
         "compare": PULSE,
         "export": [*PULSE, "--engine", "pymunk", "--out", str(tmp_path / "a")],
         "animate": [*PULSE, "--out", str(tmp_path / "a.gif")],
-        "harmonic": ["--out", str(tmp_path / "a")],
     }
     sizes = {"width": "0.5", "height": "1.5", name: str(millimetres)}
     given = [word for size, value in sizes.items() for word in (f"--{size}", value)]

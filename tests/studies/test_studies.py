@@ -147,7 +147,6 @@ MADE = [
 AT_LENGTH = [
     "defaults --quick --sources pybullet:naive",
     "free --quick --sources exact housner",
-    "harmonic --quick --points 2 --low 4.5 --high 5",
     "validate --cases 3 --sources exact mujoco",
     "validity --quick --sources pybullet:fixed",
 ]
@@ -197,12 +196,6 @@ REFUSED = [
     ("overturning --columns 200000 --rows 1000000", "--columns", "--yes"),
     ("overturning --over colour", "--over", "frequency"),
     ("overturning --rows 0", "--rows", "positive"),
-    ("harmonic --starts 0", "--starts"),
-    ("harmonic --starts 100000000", "--starts"),
-    ("harmonic --onsets 2 --over amplitude", "--onsets"),
-    ("harmonic --omega-over-p 2", "--omega-over-p"),
-    ("harmonic --low 5 --high 4", "--low"),
-    ("harmonic --sources exact", "--sources"),
     ("estimate --sources exact", "--sources is 'exact'; it must be an engine with steps"),
     ("validate --scene slide", "--scene is 'slide'; it must be among block, frame"),
     ("estimate --scene slide", "--scene is 'slide'; it must be among block, frame"),
