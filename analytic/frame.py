@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from analytic.block import RigidBlock, Upright, restitution_or
 from analytic.checks import finite, measurable
 
+MOST_COLUMNS = 100
+"""Columns of a frame: an engine holds a body for each."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RockingFrame(Upright):
@@ -19,7 +22,7 @@ class RockingFrame(Upright):
     width, height : float
         Full dimensions B and H of a column [m].
     columns : int, optional
-        N, 2 or more. The motion does not depend on it; of 3 or more columns other motions are
+        N, from 2 to 100. The motion does not depend on it; of 3 or more columns other motions are
         possible too, in which one runs ahead of the beam.
     load : float
         gamma, the mass of the beam over that of all columns.
@@ -32,7 +35,7 @@ class RockingFrame(Upright):
     Raises
     ------
     ValueError
-        If columns is not a whole number of 2 or more, the load not positive and finite, or a
+        If columns is not a whole number from 2 to 100, the load not positive and finite, or a
         number is not what `RigidBlock` takes.
 
     References
@@ -53,8 +56,8 @@ class RockingFrame(Upright):
 
     def __post_init__(self) -> None:
         count = finite("columns", self.columns)
-        if count < 2 or count != int(count):
-            allowed = "a whole number of 2 or more (the beam of a single column turns)"
+        if not 2 <= count <= MOST_COLUMNS or count != int(count):
+            allowed = f"a whole number from 2 to {MOST_COLUMNS} (the beam of a single column turns)"
             raise ValueError(f"columns is {self.columns!r}; it must be {allowed}")
         object.__setattr__(self, "columns", int(count))
         object.__setattr__(self, "load", measurable("load", self.load))

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from analytic.block import RigidBlock, Rocker, Upright
 from analytic.cart import CartBlock
-from analytic.frame import RockingFrame
+from analytic.frame import MOST_COLUMNS, RockingFrame
 from analytic.slide import SlidingBlock
 
 Start = tuple[float, float]
@@ -160,15 +160,16 @@ class SideBySide:
     ----------
     block : RigidBlock
     count : int, optional
-        How many.
+        How many, from 1 to 100.
     """
 
     block: RigidBlock
     count: int = 2
 
     def __post_init__(self) -> None:
-        if self.count != int(self.count) or self.count < 1:
-            raise ValueError(f"count is {self.count!r}; it must be a whole number from 1 on")
+        if not 1 <= self.count <= MOST_COLUMNS or self.count != int(self.count):
+            allowed = f"a whole number from 1 to {MOST_COLUMNS}"
+            raise ValueError(f"count is {self.count!r}; it must be {allowed}")
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.block, name)

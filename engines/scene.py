@@ -16,6 +16,8 @@ from engines.layouts import Body, Layout, System, layout_of
 FRAMES = ("base", "world")
 """Where the base moves: not at all, its motion being a body force, or in the world."""
 
+MOST_HALF_CYCLES = 10**6
+"""Half cycles of which an engine's process holds the times in half a GB."""
 ACCURACIES = {"loose": 40, "standard": 200, "tight": 800}
 """Name of an accuracy -> ordinary steps in a time 1/p, where steps are not all equal."""
 
@@ -108,6 +110,9 @@ class Scene:
 
     def __post_init__(self) -> None:
         one_of("accuracy", self.accuracy, tuple(ACCURACIES))
+        if (count := getattr(self.motion, "half_cycles", 1)) > MOST_HALF_CYCLES:
+            allowed = f"at most {MOST_HALF_CYCLES}, as an engine holds the times of all in memory"
+            raise ValueError(f"half_cycles is {count!r}; it must be {allowed}")
         if self.frame is not None:
             one_of("frame", self.frame, FRAMES)
         for name in ("density", "depth", "step", "time_limit_s", "max_steps"):

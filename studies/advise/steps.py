@@ -18,7 +18,7 @@ from studies.drawing.kept import tell
 from studies.kit.arguments import BadInputError, Count, Out, Positive
 from studies.kit.jobs import Job
 from studies.kit.naming import CORE, Engines
-from studies.kit.options import DEFAULT_RUNNING, Running
+from studies.kit.options import CASE_BYTES, DEFAULT_RUNNING, Running, refuse_excess
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import table_in
 from studies.measures.differences import WELL_CONDITIONED
@@ -55,6 +55,7 @@ def command(
     """
     if absent := [name for name in engines if name not in installed_engines()]:
         raise BadInputError(f"--engines is {absent[0]!r}; it must be installed here")
+    refuse_excess(f"--cases is {cases}", cases * CASE_BYTES)
     return carry_out(STEPS, plan(engines, cases, share, seed), out, running, report)
 
 

@@ -8,9 +8,10 @@ STUDY = Study(
 
 For each block, record, scale and source: the outcome, the largest rotation over the critical one, κ
 and the sensitivity, the friction that the exact solution needs, and the margin: the factor on the
-record at which the block first overturns. The exact block neither slides nor lifts off its pivot:
-where its friction is less than it needs, its row says so. A picture ranks the blocks, a page is to
-hand on. Resumable; forty blocks under one record take seconds.""",
+record at which the block first overturns. A block with friction below B/H slides: its row has the
+slips and no margin. Where the friction is less than the rocking needs, the row says "slides first",
+and there is no margin either. A picture ranks the blocks, a page is to hand on. Resumable; forty
+blocks under one record take seconds.""",
     tables=("blocks.csv",),
     others=("findings.txt", "blocks.html"),
     captions={

@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import NamedTuple
 
 from analytic.accelerograms.text import lines_of, number, shown
 from analytic.block import RigidBlock
+from analytic.slide import SlidingBlock
 from studies.cases.refusal import BadInputError
 from studies.kit.standing import MOST_M
 
@@ -16,6 +18,12 @@ COLUMNS = ("name", "width", "height", "friction", "tilt")
 NEEDED = COLUMNS[:3]
 LEAST_M = 1e-3
 """Least size [m] of a block of a list."""
+LEAST_FRICTION = 1e-3
+"""Least coefficient of friction: no base is smoother."""
+MOST_LETTERS = 300
+"""Letters of a name."""
+UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]")
+"""What no reader sees, or what turns the direction of the text around it."""
 SEPARATORS = (",", ";", "\t")
 SHOWN = 40
 """Bad values that a refusal names; it is one line."""
@@ -35,6 +43,14 @@ class Cabinet:
     def block(self) -> RigidBlock:
         """The block."""
         return RigidBlock(width=self.width_m, height=self.height_m)
+
+    @property
+    def system(self) -> RigidBlock | SlidingBlock:
+        """The block, or the one that slides: it stands upright, and its friction is below B/H."""
+        size, friction = {"width": self.width_m, "height": self.height_m}, self.friction
+        if self.tilt or friction is None or not friction < self.width_m / self.height_m:
+            return self.block
+        return SlidingBlock(**size, friction=friction)
 
     @property
     def start(self) -> tuple[float, float]:
@@ -65,12 +81,12 @@ def read_cabinets(path: Path) -> list[Cabinet]:
     except (ValueError, csv.Error) as error:
         raise BadInputError(f"the list is {str(path)!r}; {error}") from error
     cells = [dict(zip(heads, row, strict=False)) for _, row in rows]
-    names = [each.get("name", "") for each in cells]
-    bad = [
-        problem
-        for place, (at, row) in enumerate(rows)
-        for problem in _problems(at, row, heads, repeated=names[place] in names[:place])
-    ]
+    seen: set[str] = set()
+    bad: list[Bad] = []
+    for (at, row), each in zip(rows, cells, strict=True):
+        name = each.get("name", "")
+        bad += _problems(at, row, heads, repeated=name in seen)
+        seen.add(name)
     if bad:
         raise BadInputError(f"the list is {str(path)!r}; {_said(bad)}")
     return [
@@ -88,7 +104,8 @@ def _table(lines: Sequence[str]) -> tuple[list[str], list[tuple[int, list[str]]]
     """Return the names of the columns, and the rows that are not empty with their lines."""
     head = next((line for line in lines if line.strip()), "")
     separator = max(SEPARATORS, key=head.count)
-    reader = csv.reader(lines, delimiter=separator, skipinitialspace=True, strict=True)
+    ended = (f"{line}\n" for line in lines)  # a name may hold the end of a line
+    reader = csv.reader(ended, delimiter=separator, skipinitialspace=True, strict=True)
     rows = [(reader.line_num, [word.strip() for word in row]) for row in reader if any(row)]
     heads = [name.lower() for name in rows[0][1]] if rows else []
     for name in heads:
@@ -111,15 +128,20 @@ def _problems(at: int, row: list[str], heads: Sequence[str], repeated: bool) -> 
         yield Bad("the number of values", f"{len(heads)}, one a column", at, str(len(row)))
         return
     cells = dict(zip(heads, row, strict=True))
-    if not cells["name"] or repeated:
-        yield Bad("name", "each block's own" if cells["name"] else "a word", at, cells["name"])
+    name = cells["name"]
+    if not name or repeated:
+        yield Bad("name", "each block's own" if name else "a word", at, name)
+    elif len(name) > MOST_LETTERS or UNSEEN.search(name):
+        allowed = f"at most {MOST_LETTERS} letters, without control characters"
+        yield Bad("name", f"{allowed} (ends of lines, tabs, marks of direction)", at, name)
     sizes = {name: _number(cells[name]) for name in ("width", "height")}
     for name, size in sizes.items():
         if not LEAST_M <= size <= MOST_M:
             meant = f" ({1e-3 * size:g} for {size:g} mm?)" if MOST_M < size < math.inf else ""
             yield Bad(name, f"from {LEAST_M:g} to {MOST_M:g} m{meant}", at, cells[name])
-    if cells.get("friction") and not 0.0 <= _number(cells["friction"]) < math.inf:
-        yield Bad("friction", "a finite number, 0 or more, or empty", at, cells["friction"])
+    if cells.get("friction") and not LEAST_FRICTION <= _number(cells["friction"]) < math.inf:
+        allowed = f"a finite number of at least {LEAST_FRICTION:g}, or empty"
+        yield Bad("friction", allowed, at, cells["friction"])
     if not cells.get("tilt"):
         return
     # where a size is bad, too, it is not known how far the block could lean

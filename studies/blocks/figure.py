@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.blocks.report import first_words, ranked, read
 from studies.drawing.kept import Pictures
+from studies.drawing.letters import drawable, families
 from studies.drawing.styles import ENGINE_COLOURS, ENGINE_MARKERS
 
 MOST_DRAWN = 60
@@ -32,8 +34,13 @@ def draw_blocks(rows: pd.DataFrame, lines: pd.DataFrame, title: str) -> Figure:
         One of them for each block and record, in the order in which blocks are drawn.
     title : str
     """
-    names = list(dict.fromkeys(lines["name"]))[:MOST_DRAWN]
     records = list(dict.fromkeys(rows["record"]))
+    with rc_context({"font.family": families([title, *lines["name"], *records])}):
+        return _drawn(rows, lines, title, records)
+
+
+def _drawn(rows: pd.DataFrame, lines: pd.DataFrame, title: str, records: list[str]) -> Figure:
+    names = list(dict.fromkeys(lines["name"]))[:MOST_DRAWN]
     height = 1.9 + len(names) * max(0.21, 0.1 * len(records))
     drawing = Figure(figsize=(8.0, height), layout="constrained")
     axes = drawing.subplots()
@@ -48,7 +55,7 @@ def draw_blocks(rows: pd.DataFrame, lines: pd.DataFrame, title: str) -> Figure:
     axes.set_yticklabels([_short(name) for name in names], fontsize=8, parse_math=False)
     axes.grid(axis="y", alpha=0.2)
     kept = f"; these {MOST_DRAWN} first" if lines["name"].nunique() > MOST_DRAWN else ""
-    axes.set_title(title + kept, fontsize=10, wrap=True, parse_math=False)
+    axes.set_title(drawable(title) + kept, fontsize=10, wrap=True, parse_math=False)
     handles = [_handle(record, place) for place, record in enumerate(records)]
     handles.append(Line2D([], [], color="#666666", linestyle=(0, (5, 4)), label="asked"))
     legend = drawing.legend(
@@ -64,10 +71,14 @@ def _one_record(axes: Axes, lines: pd.DataFrame, names: list[str], place: int, o
     colour = ENGINE_COLOURS[place % len(ENGINE_COLOURS)]
     for _, line in lines[lines["name"].isin(names)].iterrows():
         level, end = names.index(line["name"]) + offset, line["margin"]
-        if math.isinf(end):
-            look: dict[str, Any] = {"color": colour, "fontsize": 7, "backgroundcolor": "white"}
+        if words := line["no_margin"] or ("none found" if math.isinf(end) else ""):
+            look: dict[str, Any] = {
+                "color": colour,
+                "fontsize": 7,
+                "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+            }
             where = ("axes fraction", "data")
-            axes.annotate("none found ", (1.0, level), xycoords=where, ha="right", va="center",
+            axes.annotate(f"{words} ", (1.0, level), xycoords=where, ha="right", va="center",
                           **look)  # fmt: skip
         if not (math.isfinite(end) and end > 0.0):
             continue
@@ -91,6 +102,7 @@ def _handle(record: str, place: int) -> Line2D:
 
 
 def _short(name: str) -> str:
+    name = drawable(name)
     return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
 
 

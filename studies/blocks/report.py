@@ -9,18 +9,28 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from jinja2 import Environment, PackageLoader
 
+from analytic.response import Outcome
 from studies.blocks import STUDY, strength
 from studies.drawing.kept import tell
 from studies.kit import provenance
+from studies.kit.tables import quoted, unquoted
 from studies.measures.words import capital, listed, out_of
 from studies.sources.registry import resolve
 
-WORDS = ("name", "record", "source", "outcome", "message", "islands")
+WORDS = ("name", "record", "source", "outcome", "message", "islands", "no_margin")
 """Columns of text: a block may be called nan, or 007."""
 
+SLIDES, SLIDES_FIRST = "slides", "slides first"
+"""Why a block has no margin: its friction is below B/H, or less than its rocking needs."""
+
+QUOTED = (
+    "In blocks.csv an apostrophe stands before each name that a spreadsheet would take for a "
+    "formula."
+)
 
 NEAR = 0.01
 """An answer hangs on its amplitude where its scale is so near to the margin, relative to it."""
@@ -28,7 +38,7 @@ NEAR = 0.01
 
 def read(folder: Path) -> pd.DataFrame:
     """Read a blocks.csv back."""
-    table = pd.read_csv(folder / "blocks.csv", dtype=str, keep_default_na=False)
+    table = pd.read_csv(folder / "blocks.csv", dtype=str, keep_default_na=False).map(unquoted)
     return table.astype({name: float for name in table if name not in WORDS})
 
 
@@ -39,9 +49,13 @@ def report(folder: Path) -> str:
     answers = answered(rows)
     beside = [answers[pair] for pair in zip(lines["name"], lines["record"], strict=True)]
     factors = lines[["name", "width_m", "height_m", "record", "lifts", "margin"]]
+    if lines["no_margin"].any():
+        factors = factors.assign(no_margin=lines["no_margin"])
     table = factors.reset_index(drop=True).join(pd.DataFrame(beside))
     counts, doubt = counted(rows), doubts(rows)
     said = f"{finding(folder)} {capital('; '.join(counts))}. {capital(listed(doubt))}."
+    if any(quoted(word) != word for word in (*lines["name"], *lines["record"])):
+        said += f" {QUOTED}"
     title = "Factors on a record that lift and overturn each block, and outcomes with peaks"
     text = tell(STUDY, folder, {title: table}, said)
     environment = Environment(loader=PackageLoader("studies.blocks", "."), autoescape=True)
@@ -85,18 +99,21 @@ def ranked(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def first_words(lines: pd.DataFrame) -> str:
-    """Say how many blocks overturn under a record as strong as it is or less, and which first."""
+    """Say how many blocks overturn under a record as it is, which first, and how many slide."""
     blocks = lines["name"].nunique()
     fallen = lines.loc[lines["margin"] <= 1.0, "name"].nunique()
+    sliding = lines.loc[lines["no_margin"].isin([SLIDES, SLIDES_FIRST]), "name"].nunique()
     finite = lines[lines["margin"].map(math.isfinite)]
-    if finite.empty:
-        return f"None of {blocks} blocks was found to overturn under any factor on a record"
-    first = finite.iloc[0]
-    words = f"{out_of(fallen, blocks)} blocks overturn under a record as it is, or weaker"
-    return (
-        f"{capital(words)}; "
-        f"the first is {first['name']}, at {first['margin']:.4g} times {first['record']}"
-    )
+    words = [f"none of {blocks} blocks was found to overturn under any factor on a record"]
+    if not finite.empty:
+        first = finite.iloc[0]
+        words = [
+            f"{out_of(fallen, blocks)} blocks overturn under a record as it is, or weaker",
+            f"the first is {first['name']}, at {first['margin']:.4g} times {first['record']}",
+        ]
+    if sliding:
+        words.append(f"{out_of(sliding, blocks)} slide before they overturn and have no margin")
+    return capital("; ".join(words))
 
 
 def counted(rows: pd.DataFrame) -> list[str]:
@@ -105,19 +122,24 @@ def counted(rows: pd.DataFrame) -> list[str]:
     for (scale, source), group in rows.groupby(["scale", "source"], sort=False):
         counts = group["outcome"].value_counts()
         words = [f"{count} {outcome}" for outcome, count in counts.items()]
+        words = [word.replace(SLIDES_FIRST, "sliding first") for word in words]
         said.append(f"at scale {scale:g} {source} has {listed(words)}")
     return said
 
 
 def doubts(rows: pd.DataFrame) -> list[str]:
     """Say how many blocks slide or lift off the pivot, and how many answers hang on a hundredth."""
-    cases = rows.drop_duplicates(["name", "record", "scale"])
+    case = ["name", "record", "scale"]
+    cases, ends = rows.drop_duplicates(case), rows.groupby(case, sort=False)["outcome"].agg(set)
+    flat = np.array([Outcome.SLID.value in outcomes for outcomes in ends])
+    first = np.array([SLIDES_FIRST in outcomes for outcomes in ends]) & ~flat
     near = (cases["scale"] / cases["margin"] - 1.0).abs() < NEAR
     unknown, needed = cases["friction"].isna(), cases["friction_needed"]
     words = {
-        "slide, for they need more friction than they have": cases["friction"] < needed,
+        "slide flat, since their friction is below B/H": flat,
+        "slide first, since their rocking needs more friction than they have": first,
         "have no friction given: they slide if it is less than they need, up to "
-        f"{needed[unknown].max():.3g}": unknown,
+        f"{needed[unknown].max():.3g}": unknown & needed.notna(),
         "would lift their pivot off, where no answer holds": cases["min_normal"] < 0.0,
         f"are within {100.0 * NEAR:g} % of the factor that first overturns them": near,
     }
@@ -132,12 +154,16 @@ def command_of(line: Mapping[Any, Any], sources: Sequence[str], settings: Mappin
     engines = any(resolve(name).engine for name in sources)
     asked = ("width", "width_m"), ("height", "height_m"), ("scale", "scale"), ("tilt", "tilt")
     values = {name: line[column] for name, column in asked}
-    values["friction"] = line["friction"] if engines else math.nan
+    slides = line["no_margin"] == SLIDES
+    values["friction"] = line["friction"] if engines or slides else math.nan
     known = {name: value for name, value in values.items() if not math.isnan(value)}
     known |= {name: word for name, word in settings.items() if word}
+    if slides:
+        known["scene"] = "slide"
+        sources = [name for name in sources if name == "exact" or resolve(name).engine]
     said = " ".join(f"--{name} {value}" for name, value in known.items())
     record = shlex.quote(str(line["record"]))
-    return f"rocking compare {said} --record {record} --sources {' '.join(sources)}"
+    return f"rocking compare {said} --record {record} --sources {' '.join(sources or ['exact'])}"
 
 
 def answered(rows: pd.DataFrame) -> dict[tuple[str, str], dict[str, str]]:
@@ -145,6 +171,7 @@ def answered(rows: pd.DataFrame) -> dict[tuple[str, str], dict[str, str]]:
     found: dict[tuple[str, str], dict[str, str]] = {}
     for row in rows.to_dict("records"):
         peak = f" {row['peak_ratio']:.4g}" if row["outcome"] == "rocked" else ""
+        peak = f" {1e3 * row['slid_m']:.3g} mm" if row["outcome"] == "slid" else peak
         mine = found.setdefault((row["name"], row["record"]), {})
         mine[f"{row['source']} × {row['scale']:g}"] = f"{row['outcome']}{peak}"
     return found

@@ -7,15 +7,17 @@ further up does so at points of the grid.
 """
 
 import math
+import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import chain, groupby
+from itertools import groupby
 
 from analytic.block import RigidBlock
 from analytic.conditioning import scaled
-from analytic.motion import Motion
+from analytic.record import Record
 from analytic.response import Outcome
-from analytic.simulate import strongest
+from analytic.simulate import simulate, strongest
 from studies.kit.provenance import usable_cores
 
 APART = 0.01
@@ -40,29 +42,48 @@ class Strength:
         At which the block leaves its base; 0 if it starts off rest.
     margin : float
         The least that was found to overturn it, to 1e-6 of it, from above; inf if none up to
-        MOST_ONSETS onsets does, nan if a solution failed.
+        MOST_ONSETS onsets does.
+    friction : float
+        That the exact solution needs at the margin, or at the largest factor tried if it is inf.
     islands : tuple of (float, float)
         Between which points of the grid the block survives again, up to BEYOND times the margin.
     """
 
     lifts: float
     margin: float
+    friction: float
     islands: tuple[tuple[float, float], ...] = ()
 
 
-def strength(block: RigidBlock, motion: Motion, start: tuple[float, float]) -> Strength:
+class UndecidedError(Exception):
+    """Why a search finds no margin."""
+
+
+def strength(
+    block: RigidBlock,
+    motion: Record,
+    start: tuple[float, float],
+    limit_s: float = math.inf,
+    tell: Callable[[int], object] = abs,
+) -> Strength:
     """Find by which factors on a motion the exact block overturns.
 
     Parameters
     ----------
     block : RigidBlock
-    motion : Motion
+    motion : Record
         As it is at the factor 1.
     start : (float, float)
         Rotation [rad] and angular velocity [rad/s] at time 0, the same for all factors.
+    limit_s : float, optional
+        Wall-clock time [s] after which no further factor is tried.
+    tell : callable, optional
+        Called with the number of factors tried since it was called before.
 
     Raises
     ------
+    UndecidedError
+        If the time is up, or a solution failed.
     ValueError
         If the start is none (`analytic.start.folded` says which), or nothing moves.
     """
@@ -70,6 +91,16 @@ def strength(block: RigidBlock, motion: Motion, start: tuple[float, float]) -> S
     if peak == 0.0:
         raise ValueError("the motion is zero throughout; no factor makes it stronger")
     solve = scaled(block, motion, start=start)
+    end = time.monotonic() + limit_s
+
+    def outcome(factor: float) -> Outcome:
+        if time.monotonic() > end:
+            raise UndecidedError(f"no margin within the time limit of {limit_s:g} s")
+        found = solve(factor, 1.0)[1]
+        if found is Outcome.FAILED:
+            raise UndecidedError(f"no margin: the solution at the factor {factor:g} failed")
+        return found
+
     at_rest = start == (0.0, 0.0)
     onset = math.tan(block.alpha) * block.gravity / peak
     lifts = onset if at_rest else 0.0
@@ -78,21 +109,26 @@ def strength(block: RigidBlock, motion: Motion, start: tuple[float, float]) -> S
     cores = usable_cores()
 
     def look(begin: int) -> list[Outcome]:
-        return [solve(factor, 1.0)[1] for factor in factors[begin : begin + AT_ONCE]]
+        return [outcome(factor) for factor in factors[begin : begin + AT_ONCE]]
 
     with ThreadPoolExecutor(cores) as pool:
         while not enough(factors, found):
             begins = range(len(found), len(found) + cores * AT_ONCE, AT_ONCE)
-            found += chain.from_iterable(pool.map(look, begins))
-    if Outcome.FAILED in found or Outcome.OVERTURNED not in found:
-        return Strength(lifts=lifts, margin=math.nan if Outcome.FAILED in found else math.inf)
+            for outcomes in pool.map(look, begins):
+                found += outcomes
+                tell(len(outcomes))
+    if Outcome.OVERTURNED not in found:
+        needs = simulate(block, motion.scaled(factors[-1]), start=start).friction_needed
+        return Strength(lifts=lifts, margin=math.inf, friction=needs)
     first = found.index(Outcome.OVERTURNED)
     low, high = factors[first - 1] if first else lifts, factors[first]
     while high - low > WIDTH * high:
         middle = 0.5 * (low + high)
-        falls = solve(middle, 1.0)[1] is Outcome.OVERTURNED
+        falls = outcome(middle) is Outcome.OVERTURNED
         low, high = (low, middle) if falls else (middle, high)
-    return Strength(lifts=lifts, margin=high, islands=islands(factors[first:], found[first:]))
+    needs = simulate(block, motion.scaled(high), start=start).friction_needed
+    again = islands(factors[first:], found[first:])
+    return Strength(lifts=lifts, margin=high, friction=needs, islands=again)
 
 
 def grid(onset: float, at_rest: bool) -> list[float]:
@@ -105,7 +141,7 @@ def grid(onset: float, at_rest: bool) -> list[float]:
 
 def enough(factors: list[float], found: list[Outcome]) -> bool:
     """Tell whether a block overturns at one of the factors tried, and at those beyond was asked."""
-    if len(found) == len(factors) or Outcome.FAILED in found:
+    if len(found) == len(factors):
         return True
     if Outcome.OVERTURNED not in found:
         return False

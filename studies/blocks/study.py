@@ -7,20 +7,24 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import product
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
+import numpy as np
 import pandas as pd
 from cyclopts import Parameter
+from tqdm import tqdm
 
+from analytic.block import RigidBlock
 from analytic.record import Record
 from analytic.response import Outcome, Response
 from studies.blocks import STUDY
 from studies.blocks.cabinets import Cabinet, read_cabinets
-from studies.blocks.report import finding, report
-from studies.blocks.strength import strength
+from studies.blocks.report import SLIDES, SLIDES_FIRST, finding, report
+from studies.blocks.strength import UndecidedError, strength
 from studies.cases.accelerograms import Baseline, Units, baseline_note, recorded
 from studies.cases.paper import free_rocking_window
 from studies.kit.arguments import (
+    BadInputError,
     Out,
     Place,
     Positive,
@@ -32,7 +36,7 @@ from studies.kit.arguments import (
 from studies.kit.jobs import Job, summary
 from studies.kit.journal import Row
 from studies.kit.naming import Sources
-from studies.kit.options import DEFAULT_RUNNING, Running, slides
+from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.posing import refuse_endless
 from studies.measures.differences import conditioning_of_one
@@ -46,8 +50,10 @@ NO_SCALE = 0.0
 """Of a row that is about all factors on a record."""
 FACTS = ("kappa", "sensitivity", "min_normal", "friction_needed")
 """Columns of the exact solution, which all sources of a case are read beside."""
-FOUND = ("lifts", "margin", "islands")
+FOUND = ("lifts", "margin", "margin_friction", "islands")
 """Columns of a block under a record, at whatever factor."""
+SOON_S = 2.0
+"""A search for a margin that takes longer [s] shows its progress."""
 CASE = ["name", "record", "scale"]
 OF_A_BLOCK = CASE[:2]
 """Columns that name a case, and all cases of a block under a record."""
@@ -72,7 +78,7 @@ def command(
     ----------
     cabinets
         A table with a line of names: name, width and height [m] of each block, and perhaps its
-        friction, for engines, and its tilt, the rotation that it starts from in units of α.
+        friction, and its tilt, the rotation that it starts from in units of α.
     record
         Recorded accelerograms, files as `rocking compare --record` takes them.
     scale
@@ -95,7 +101,7 @@ def command(
     cases = len(listed) * len(grounds) * len(scale)
     running.refuse_too_much(asked, cases, ("exact", *sources), yes=yes)
     settings = {"units": units or "", "baseline": baseline or ""}
-    chosen = plan(listed, grounds, scale, sources, settings)
+    chosen = plan(listed, grounds, scale, sources, settings, running.time_limit)
     return carry_out(STUDY, chosen, out, running, report)
 
 
@@ -105,14 +111,17 @@ def plan(
     scales: Sequence[float],
     sources: Sequence[str],
     settings: Mapping[str, str],
+    limit_s: float,
 ) -> Plan:
     """Return the plan that puts every block to every record, and looks for its margin."""
     asked = list(dict.fromkeys(["exact", *sources]))
+    scaled = {name: [_scaled(grounds[name], name, scale) for scale in scales] for name in grounds}
     jobs = []
-    for cabinet, (record, ground) in product(cabinets, grounds.items()):
-        for scale, source in product(scales, asked):
-            jobs.append(_job(cabinet, record, ground.scaled(scale), scale, source, ANSWERS))
-        jobs.append(_job(cabinet, record, ground, NO_SCALE, "exact", MARGINS))
+    for cabinet, record in product(cabinets, grounds):
+        for (scale, ground), source in product(zip(scales, scaled[record], strict=True), asked):
+            jobs.append(_job(cabinet, record, ground, scale, source, ANSWERS))
+        if isinstance(cabinet.system, RigidBlock):
+            jobs.append(_job(cabinet, record, grounds[record], NO_SCALE, "exact", MARGINS))
 
     def tabulate(rows: Sequence[Row]) -> Tables:
         table = joined(rows)
@@ -128,15 +137,26 @@ def plan(
         jobs=jobs,
         settings=settings,
         growing=growing,
-        reduce=partial(reduce, baseline=settings["baseline"]),
+        reduce=partial(reduce, baseline=settings["baseline"], limit_s=limit_s),
         tabulate=tabulate,
     )
+
+
+def _scaled(ground: Record, name: str, scale: float) -> Record:
+    try:
+        return ground.scaled(scale)
+    except ValueError as error:
+        allowed = f"so small that the record {name!r} stays finite"
+        raise BadInputError(f"--scale is {scale:g}; it must be {allowed} ({error})") from error
 
 
 def _job(
     cabinet: Cabinet, record: str, motion: Record, scale: float, source: str, table: str
 ) -> Job:
-    block, labels = cabinet.block, {"name": cabinet.name, "width_m": cabinet.width_m}
+    labels = {"name": cabinet.name, "width_m": cabinet.width_m}
+    # a model of what rocks is not asked about what slides: `joined` marks its row
+    known = source == "exact" or resolve(source).engine
+    block = cabinet.system if known else cabinet.block
     window = free_rocking_window(block, motion)
     refuse_endless(block, window)
     options: dict[str, Any] = {}
@@ -162,42 +182,76 @@ def _job(
     )
 
 
-def reduce(job: Job, response: Response, *, baseline: str) -> Row:
+def reduce(job: Job, response: Response, *, baseline: str, limit_s: float) -> Row:
     """Return a source's answer, with what is known of the exact one; or the margin of a block."""
-    start = job.options.get("start", (0.0, 0.0))
     row = summary(job, response)
+    slips = np.cumsum([0.0, *response.slips])
+    row["slips"] = len(response.slips)
+    row["slid_m"] = math.nan if isinstance(job.block, RigidBlock) else float(np.abs(slips).max())
     if job.labels["table"] == MARGINS:
-        found = strength(job.block, job.motion, start)
-        ends = (dict.fromkeys((f"{low:.4g}", f"{high:.4g}")) for low, high in found.islands)
-        words = " ".join(map("-".join, ends))
-        return {**row, "lifts": found.lifts, "margin": found.margin, "islands": words}
+        return row | _margin(job, limit_s)
     exact = job.source == "exact"
-    said = [row["message"], slides(response, job.labels["friction"]) if exact else ""]
-    if isinstance(job.motion, Record):
-        said.append(baseline_note(job.motion, baseline or None))
+    said = [row["message"], baseline_note(cast(Record, job.motion), baseline or None)]
     row["message"] = "; ".join(filter(None, said))
-    known = conditioning_of_one(job.block, job.motion, start, response) if exact else {}
-    limits = {name: getattr(response, name) for name in FACTS[2:]} if exact else {}
-    return {**row, **known, **limits}
+    if not exact or not isinstance(job.block, RigidBlock):
+        return row
+    start = job.options.get("start", (0.0, 0.0))
+    known = conditioning_of_one(job.block, job.motion, start, response)
+    return {**row, **known, **{name: getattr(response, name) for name in FACTS[2:]}}
+
+
+def _margin(job: Job, limit_s: float) -> Row:
+    """Search for the margin of a block; where there is none, the row fails and says why."""
+    start = job.options.get("start", (0.0, 0.0))
+    with tqdm(delay=SOON_S, leave=False, disable=None, unit=" factors") as bar:
+        try:
+            found = strength(job.block, cast(Record, job.motion), start, limit_s, bar.update)
+        except UndecidedError as error:
+            nothing = dict.fromkeys(FOUND, math.nan)
+            return {"outcome": Outcome.FAILED.value, "message": str(error), **nothing}
+    ends = (dict.fromkeys((f"{low:.4g}", f"{high:.4g}")) for low, high in found.islands)
+    words = " ".join(map("-".join, ends))
+    return dict(zip(FOUND, (found.lifts, found.margin, found.friction, words), strict=True))
 
 
 def joined(rows: Sequence[Row]) -> pd.DataFrame:
     """Return the answers, each beside the facts of the exact solution and the margin of its block.
 
     A factor that was asked for and overturns counts for the margin, too: it may lie in a sliver
-    that the search did not see.
+    that the search did not see. What slides has no margin, nor an answer of a source that cannot
+    let it slide.
     """
     table = pd.DataFrame(rows)
     answers, margins = (table[table["table"] == kind] for kind in (ANSWERS, MARGINS))
     exact = answers[answers["source"] == "exact"]
     fallen = exact[exact["outcome"] == Outcome.OVERTURNED.value]
     asked = fallen.groupby(OF_A_BLOCK, as_index=False).agg(asked=("scale", "min"))
+    facts = exact.reindex(columns=[*CASE, "outcome", *FACTS]).rename(columns={"outcome": "exact"})
+    found = margins.reindex(columns=[*OF_A_BLOCK, "outcome", *FOUND]).astype({"islands": object})
     whole = (
-        answers.drop(columns=["table", *FACTS, *FOUND])
-        .merge(exact[[*CASE, *FACTS]], on=CASE)
-        .merge(margins[[*OF_A_BLOCK, *FOUND]], on=OF_A_BLOCK)
+        answers.drop(columns=["table", *FACTS, *FOUND], errors="ignore")
+        .merge(facts, on=CASE)
+        .merge(found.rename(columns={"outcome": "search"}), on=OF_A_BLOCK, how="left")
         .merge(asked, on=OF_A_BLOCK, how="left")
-        .fillna({"asked": math.inf})
+        .fillna({"asked": math.inf, "islands": ""})
     )
     whole["margin"] = whole[["margin", "asked"]].min(axis=1, skipna=False)
-    return whole.drop(columns="asked")
+    flat, needs = whole["search"].isna(), whole["friction_needed"]
+    short = whole["friction"] < needs
+    weak = short & (whole["scale"] <= whole["margin"])
+    weak |= whole["friction"] < whole["margin_friction"]
+    pair = [whole[name] for name in OF_A_BLOCK]
+    reasons = {
+        SLIDES: flat,
+        Outcome.FAILED.value: whole["search"] == Outcome.FAILED.value,
+        SLIDES_FIRST: weak.groupby(pair).transform("any"),
+    }
+    whole["no_margin"] = np.select([*reasons.values()], [*reasons], "")
+    whole.loc[whole["no_margin"] != "", ["margin", "islands"]] = math.nan, ""
+    engines = [name for name in whole["source"].unique() if resolve(name).engine]
+    kept = (Outcome.SLID.value, Outcome.AT_REST.value, Outcome.FAILED.value)
+    moved = short | (flat & (whole["exact"] != Outcome.AT_REST.value))
+    moved &= ~whole["outcome"].isin(kept) & ~whole["source"].isin(engines)
+    whole.loc[moved, ["outcome", "peak_ratio"]] = SLIDES_FIRST, math.nan
+    whole.loc[short, ["kappa", "sensitivity"]] = math.nan
+    return whole.drop(columns=["asked", "exact", "search"])

@@ -11,6 +11,7 @@ from typing import Annotated, Any, TypeVar, get_args
 from cyclopts import Parameter, Token
 
 from analytic.accelerograms.text import finite_number, underflows
+from engines.scene import MOST_HALF_CYCLES
 from studies.cases.refusal import BadInputError as BadInputError
 
 T = TypeVar("T")
@@ -89,9 +90,6 @@ Count = Annotated[int, _number(f"a positive whole number up to {MOST}", 1, MOST)
 LEAST_STEP = 1e-7
 """The smallest step: ten million of them last as long as 1/p."""
 
-MOST_HALF_CYCLES = 10**6
-"""Half cycles of which an engine's process holds the times in half a GB."""
-
 _STEP = f"a positive number of at least {LEAST_STEP:g}: {1 / LEAST_STEP:g} of them make up 1/p"
 _CYCLES = (
     f"a positive whole number up to {MOST_HALF_CYCLES}, as the times of all are held in memory"
@@ -168,10 +166,12 @@ def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
     values = list(values)
     if not values:
         raise BadInputError(f"{argument} is empty; it must have at least one value")
-    for number, value in enumerate(values):
-        if value in values[:number]:
+    seen: set[Any] = set()
+    for value in values:
+        if value in seen:
             shown = str(value) if isinstance(value, Path) else value
             raise BadInputError(f"{argument} names {shown!r} twice; each may be named once")
+        seen.add(value)
 
 
 def refuse_given(options: Mapping[str, object], allowed: str) -> None:

@@ -106,7 +106,7 @@ class Computing:
     jobs
         Processes for the engines; by default the number of cores.
     time_limit
-        Wall-clock time [s] after which an engine's case is given up.
+        Wall-clock time [s] after which an engine's case, or the search for a margin, is given up.
     cluster
         Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
     """

@@ -79,7 +79,7 @@ class Standing:
         on a cart of --mass-ratio that feels it, pushed by the force (m + M) times the acceleration.
         cylinder: one that rolls on its rim, of --radius, --height and --tilt, the latter in rad.
     columns
-        Of a frame, 2 or more.
+        Of a frame, from 2 to 100.
     load
         Of a frame: the mass of its beam over that of all columns.
     mass_ratio

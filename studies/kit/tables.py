@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from contextlib import suppress
 from pathlib import Path
 
 import pandas as pd
@@ -17,8 +19,34 @@ SHOWN = 60
 """Rows of a table that are shown as text; its CSV has all."""
 
 
+FORMULA = re.compile(r"'*[=+\-@].", re.DOTALL)
+"""How words begin that a spreadsheet takes for a formula, or that were quoted once."""
+
+
+def quoted(word: object) -> object:
+    """Return a word with an apostrophe before it if a spreadsheet would take it for a formula."""
+    if not isinstance(word, str) or not FORMULA.match(word):
+        return word
+    with suppress(ValueError):
+        float(word)
+        return word
+    return f"'{word}"
+
+
+def unquoted(word: object) -> object:
+    """Return a word as it was before it was `quoted`."""
+    bare = word[1:] if isinstance(word, str) and word.startswith("'") else word
+    return bare if quoted(bare) == word else word
+
+
+def _words(table: pd.DataFrame) -> list[str]:
+    return [str(name) for name in table if not pd.api.types.is_numeric_dtype(table[name])]
+
+
 def write_table(path: Path, table: pd.DataFrame) -> None:
     """Write a table as CSV, numbers to the bit and missing ones as nan, in one piece.
+
+    A word that a spreadsheet would take for a formula is `quoted`.
 
     Parameters
     ----------
@@ -31,7 +59,8 @@ def write_table(path: Path, table: pd.DataFrame) -> None:
     OSError
         That names `path`.
     """
-    write_text(path, table.to_csv(index=False, na_rep="nan"))
+    safe = table.assign(**{name: table[name].map(quoted) for name in _words(table)})
+    write_text(path, safe.to_csv(index=False, na_rep="nan"))
 
 
 def read_table(path: Path, *words: str) -> pd.DataFrame:
@@ -44,7 +73,8 @@ def read_table(path: Path, *words: str) -> pd.DataFrame:
         Columns of words that may look like numbers, besides message.
     """
     texts = dict.fromkeys(("message", *words), str)
-    return pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=texts)
+    table = pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=texts)
+    return table.assign(**{name: table[name].map(unquoted) for name in _words(table)})
 
 
 def table_in(folder: Path, name: str, *words: str) -> pd.DataFrame:

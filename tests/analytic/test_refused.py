@@ -79,7 +79,7 @@ WRONG = {
         "restitution": (-0.1, 1.1, INF, NAN),
     },
     RockingFrame: {
-        "columns": (1, 2.5),
+        "columns": (1, 2.5, 101, 1e8),
         "load": (0.0, -1.0),
         "width": (0.0,),
         "restitution": (1.1, NAN),

@@ -117,6 +117,13 @@ def test_a_scene_refuses_what_is_not_allowed(options, message):
         scene(pulse(1.3, 1.0), **options)
 
 
+def test_counts_that_an_engine_holds_one_by_one_are_bounded():
+    with pytest.raises(ValueError, match="half_cycles is 1000001; it must be at most 1000000"):
+        scene(pulse(1.3, 1.0, 10**6 + 1))
+    with pytest.raises(ValueError, match="count is 101; it must be a whole number from 1 to 100"):
+        SideBySide(block=BLOCK, count=101)
+
+
 @pytest.mark.parametrize("engine", HERE)
 def test_what_an_engine_does_not_have_is_refused(engine):
     with pytest.raises(ValueError, match=f"preset of {engine} is 'best'; it must be one of"):

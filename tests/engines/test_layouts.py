@@ -283,5 +283,5 @@ class Nothing:
 def test_what_has_no_layout_is_named():
     with pytest.raises(TypeError, match="system is a Nothing; it must be one of RigidBlock, "):
         layout_of(Nothing(), 1000.0, None, (0.0, 0.0))
-    with pytest.raises(ValueError, match="count is 0; it must be a whole number from 1 on"):
+    with pytest.raises(ValueError, match="count is 0; it must be a whole number from 1 to 100"):
         SideBySide(block=BLOCK, count=0)

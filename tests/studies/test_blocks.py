@@ -5,6 +5,8 @@ import html
 import math
 import re
 import shlex
+import time
+import warnings
 
 import numpy as np
 import pandas as pd
@@ -12,16 +14,20 @@ import pytest
 from commanding import compared, refused
 from records import write_record
 
-from analytic import Outcome, Record, RigidBlock, kanai_tajimi, simulate
+from analytic import Outcome, Record, RigidBlock, SlidingBlock, kanai_tajimi, simulate
 from analytic.criteria import overturning_velocity
 from studies.__main__ import run
-from studies.blocks.report import doubts, read
+from studies.blocks.cabinets import read_cabinets
+from studies.blocks.figure import pictures
+from studies.blocks.report import doubts, first_words, ranked, read
 from studies.blocks.strength import BEYOND, WIDTH, grid, strength
-from studies.blocks.study import joined
+from studies.blocks.study import joined, plan
 
 REST = (0.0, 0.0)
 HEAD = "name,width,height,friction,tilt\n"
 LIST = HEAD + "A,0.5,1.5,,\nB,0.45,1.9,0.2,\nC,0.6,1.7,,0.3\n"
+SLIDING = HEAD + "A,0.5,1.5,,\nB,0.45,1.9,0.2,\nC,0.45,1.9,0.24,\nD,0.45,1.9,0.7,\n"
+"""Of B/H 0.237: B slides flat, C rocks only with more friction than it has, D rocks."""
 SHAKEN = kanai_tajimi(3, peak=3.0, duration=6.0, omega=10.0, rise=1.0, fall=3.0)
 
 
@@ -35,6 +41,7 @@ def place(tmp_path, monkeypatch):
 
 
 def test_rows_are_those_of_compare_to_the_last_digit(place, capsys):
+    (place / "list.csv").write_text(LIST.replace("0.2,", "0.9,"))
     sources = ["exact", "housner", "pymunk:naive"]
     asked = ["--record", "Y.AT2", "--scale", "0.8", "2", "--baseline", "linear"]
     code = run(["blocks", "list.csv", *asked, "--out", "out", "--sources", *sources])
@@ -60,7 +67,91 @@ def test_rows_are_those_of_compare_to_the_last_digit(place, capsys):
                 assert (value if math.isfinite(value) else None) == same[name], name
     assert code == failed
     assert {row["outcome"] for row in rows} >= {"rocked", "overturned"}
-    assert any("slides: needs" in row["message"] for row in rows if row["friction"] == "0.2")
+    assert {row["no_margin"] for row in rows} == {""}
+
+
+def test_what_slides_has_slips_and_no_margin(place, capsys):
+    """Below B/H the sliding block answers; from there on nothing does where rocking needs more."""
+    (place / "list.csv").write_text(SLIDING)
+    sources = ["exact", "housner", "pymunk:naive"]
+    asked = ["--record", "Y.AT2", "--scale", "0.3", "1", "--sources", *sources]
+    assert run(["blocks", "list.csv", *asked, "--out", "out"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    rows = read(place / "out")
+    found = rows.set_index(["name", "scale", "source"])
+    strong = found.xs(1.0, level="scale")
+    outcomes = {
+        "B": ["slid", "slides first", "slid"],
+        "C": ["slides first", "slides first", "rocked"],
+        "D": ["rocked", "rocked", "overturned"],
+    }
+    assert {name: strong.loc[name, "outcome"].tolist() for name in outcomes} == outcomes
+    assert strong.loc["C", "peak_ratio"].isna().tolist() == [True, True, False]
+    block = SlidingBlock(width=0.45, height=1.9, friction=0.2)
+    slips = simulate(block, Record.read(place / "Y.AT2")).slips
+    exact = strong.loc["B", "exact"]
+    assert exact["slips"] == len(slips)
+    assert exact["slid_m"] == pytest.approx(np.abs(np.cumsum(slips)).max(), rel=1e-12)
+    assert (found.xs(0.3, level="scale")["outcome"] != "slides first").all()
+    why = {name: set(group) for name, group in rows.groupby("name")["no_margin"]}
+    assert why == {"A": {""}, "B": {"slides"}, "C": {"slides first"}, "D": {""}}
+    assert (rows["margin"].isna() == (rows["no_margin"] != "")).all()
+    assert (rows["friction_needed"] <= rows["margin_friction"]).any()
+    lines = ranked(rows)
+    assert set(lines["name"][:2]) == {"A", "D"}
+    assert "2 of 4 slide" in first_words(lines) and text.count("slide first") == 1
+    drawn = [words.get_text().strip() for words in pictures(place / "out")["blocks"].axes[0].texts]
+    assert drawn == ["slides", "slides first"]
+    page = (place / "out" / "blocks.html").read_text()
+    assert "<strong>slides</strong>" in page and "<strong>slides first</strong>" in page
+    assert "needs 0." not in page
+
+
+def test_a_list_of_which_all_slide_has_no_margin_at_all(place, capsys):
+    (place / "list.csv").write_text("name,width,height,friction\nB,0.45,1.9,0.2\n")
+    assert run(["blocks", "list.csv", "--record", "Y.AT2", "--out", "out"]) == 0
+    assert "all" not in capsys.readouterr().out.split(";")[0]
+    rows = read(place / "out")
+    assert rows["outcome"].tolist() == ["slid"] and rows["margin"].isna().all()
+
+
+def test_a_search_that_takes_too_long_is_a_failed_row(place, capsys):
+    asked = ["--record", "X.AT2", "--out", "out", "--time-limit", "1e-4"]
+    assert run(["blocks", "list.csv", *asked]) == 1
+    assert capsys.readouterr().err.count("time limit") == 2
+    rows = read(place / "out").set_index("name")
+    assert rows["no_margin"].tolist() == ["failed", "slides", "failed"]
+    assert rows["margin"].isna().all() and (rows["outcome"] != "failed").all()
+
+
+def test_a_search_tells_how_many_factors_it_has_tried():
+    block, told = RigidBlock(width=0.5, height=1.5), []
+    margin = strength(block, SHAKEN, REST, tell=told.append).margin
+    onset = 9.81 / 3.0 / SHAKEN.peak
+    least = math.log(BEYOND * margin / onset) / math.log1p(0.01)
+    assert len(told) > 2 and least <= sum(told) <= least + 4 * 4 * 64
+
+
+def test_jobs_share_the_scaled_records(place):
+    blocks = read_cabinets(place / "list.csv")
+    asked = ({"X": SHAKEN}, [0.5, 1.0, 2.0], ["exact", "housner"], {"baseline": ""}, 60.0)
+    jobs = plan(blocks, *asked).jobs
+    assert len(jobs) == 3 * 3 * 2 + 2
+    assert len({id(job.motion) for job in jobs}) == 4
+
+
+def test_many_rows_are_read_in_no_time(tmp_path):
+    """As many as are read in about a second; a search of all rows for each takes a minute."""
+    path = tmp_path / "many.csv"
+    path.write_text("name,width,height\n" + "".join(f"N{n},0.5,1.5\n" for n in range(50_000)))
+    began = time.process_time()
+    assert len(read_cabinets(path)) == 50_000
+    assert time.process_time() - began < 10.0
+
+
+@pytest.mark.parametrize("scale", ["1e308", "1e307"])
+def test_a_scale_that_overflows_is_one_line(scale, place, capsys):
+    refused(capsys, [*ASKED, "--scale", scale], "--scale is 1e+30", "X.AT2")
 
 
 ASKED = ["blocks", "list.csv", "--record", "X.AT2", "--out", "out"]
@@ -122,12 +213,14 @@ def test_a_scale_that_overturns_in_a_sliver_counts_for_the_margin():
     case = {"name": "A", "record": "X", "outcome": "rocked"}
     facts = dict.fromkeys(("kappa", "sensitivity", "min_normal", "friction_needed"), 1.0)
     exact = {**case, "table": "answers", "source": "exact", **facts}
+    found = {"lifts": 0.5, "margin": 1.2, "margin_friction": 0.4, "islands": ""}
     rows = [
         {**exact, "scale": 0.9, "outcome": "overturned"},
         {**exact, "scale": 1.0},
         {**case, "table": "answers", "source": "rk4", "scale": 0.9},
-        {**case, "table": "margins", "scale": 0.0, "lifts": 0.5, "margin": 1.2, "islands": ""},
+        {**case, "table": "margins", "source": "exact", "scale": 0.0, **found},
     ]
+    rows = [{"friction": math.nan, **row} for row in rows]
     assert joined(rows)["margin"].tolist() == [0.9, 0.9, 0.9]
 
 
@@ -137,7 +230,13 @@ BAD = [
     (HEAD + "A,0.5,nan,,\n", "line 2: height is 'nan'"),
     (HEAD + 'A,"0,5",1.5,,\n', "line 2: width is '0,5'"),
     (HEAD + "A,0.5,1_5,,\n", "line 2: height is '1_5'"),
-    (HEAD + "A,0.5,1.5,-0.1,\n", "line 2: friction is '-0.1'; it must be a finite number, 0 or"),
+    (HEAD + "A,0.5,1.5,-0.1,\n", "line 2: friction is '-0.1'; it must be a finite number of at"),
+    (HEAD + "A,0.5,1.5,0,\n", "line 2: friction is '0'; it must be a finite number of at least"),
+    (HEAD + f"{'x' * 5000},0.5,1.5,,\n", "line 2: name is 'x.*x'; it must be at most 300 letters"),
+    (HEAD + 'A,1,2,,\n"B\nC",0.5,1.5,,\n', r"line 4: name is 'B\nC'; it must be at most"),
+    (HEAD + '"B\tC",0.5,1.5,,\n', r"line 2: name is 'B\tC'; it must be at most"),
+    (HEAD + "B\u202eC,0.5,1.5,,\n", r"line 2: name is 'B\u202eC'; it must be at most"),
+    (HEAD + "B\u2066C,0.5,1.5,,\n", r"line 2: name is 'B\u2066C'; it must be at most"),
     (HEAD + "A,0.5,1.5,,5\n", "line 2: tilt is '5'; it must be a finite number between -4.88203"),
     (HEAD + ",0.5,1.5,,\n", "line 2: name is ''; it must be a word"),
     (HEAD + "A,0.5,1.5,,\n\nA,0.4,1.5,,\n", "line 4: name is 'A'; it must be each block's own"),
@@ -169,13 +268,22 @@ def test_all_bad_rows_are_named_at_once(place, capsys):
     ]
 
 
-NAMES = ["nan", "007", "$x_1$", "<b>&", "Schrank Ä 3", "a" * 300]
+FORMULAS = ["=cmd|' /C calc'!A0", "+1+1", "@SUM(A1)", "-2+3", "'=x"]
+"""What a spreadsheet would take for one, or for what was one."""
+NAMES = ["nan", "007", "$x_1$", "<b>&", "Schrank Ä 3", "a" * 300, "サーバー", "🗄️ B", *FORMULAS]
 
 
 def test_names_are_what_they_are(place, capsys):
     lines = [f"{name};0.5;{1.2 + 0.1 * n}" for n, name in enumerate(NAMES)]
     (place / "list.csv").write_text("\n".join(["name;width;height", *lines]))
-    assert run(["blocks", "list.csv", "--record", "X.AT2", "--out", "out"]) == 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of letters that no font has, too
+        assert run(["blocks", "list.csv", "--record", "X.AT2", "--out", "out"]) == 0
+    output = capsys.readouterr()
+    assert output.err == "" and output.out.count("apostrophe") == 1
+    with (place / "out" / "blocks.csv").open(newline="") as file:
+        written = [row["name"] for row in csv.DictReader(file)]
+    assert written == [f"'{name}" if name in FORMULAS else name for name in NAMES]
     assert read(place / "out")["name"].tolist() == NAMES
     page = (place / "out" / "blocks.html").read_text()
     assert "<b>" not in page and html.escape("<b>&") in page
@@ -206,6 +314,7 @@ def test_the_least_margin_comes_first_in_words_page_and_table(place, capsys):
     rows = read(place / "out").sort_values("margin")
     first, fallen = rows.iloc[0], rows.loc[rows["margin"] <= 1.0, "name"].nunique()
     words = f"the first is {first['name']}, at {first['margin']:.4g} times {first['record']}"
+    fallen = fallen or "None"
     lines = capsys.readouterr().out.splitlines()
     said = " ".join(lines)
     assert words in said and f"{fallen} of 3 blocks overturn" in said
@@ -217,8 +326,10 @@ def test_the_least_margin_comes_first_in_words_page_and_table(place, capsys):
 
 def test_a_friction_that_was_not_given_is_none_that_suffices():
     case = {"name": "A", "record": "r", "scale": 1.0, "margin": 2.0, "min_normal": 0.5}
+    case["outcome"] = "rocked"
     rows = pd.DataFrame([{**case, "friction": math.nan, "friction_needed": 0.4}])
     (said,) = doubts(rows)
     assert said.startswith("1 of 1 have no friction given") and said.endswith("up to 0.4")
     assert doubts(rows.assign(friction=0.5))[0].startswith("none slides")
-    assert doubts(rows.assign(friction=0.3))[0].startswith("1 of 1 slide,")
+    first = rows.assign(friction=0.3, outcome="slides first")
+    assert doubts(first)[0].startswith("1 of 1 slide first,")

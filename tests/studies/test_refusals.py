@@ -151,6 +151,7 @@ export CASE --out DIR --engine mujoco --preset landing | --preset is 'landing'; 
 export CASE --out DIR --engine mujoco:landing | its preset must have equal steps: naive, naive-base
 export CASE --out DIR --engine mujoco:naive --preset fixed | only where --engine has none
 export CASE --out DIR --engine mujoco --scene frame --load 2 --columns 1 | columns is 1; it must be
+compare CASE --scene frame --load 2 --columns 100000 | columns is 100000; it must be a whole number
 export CASE --out DIR --engine mujoco --scene frame --load 0 | --load is '0'; it must be
 animate CASE --out film.gif --scene frame | --load missing
 export CASE --out DIR --engine mujoco --scene slide | --friction missing
