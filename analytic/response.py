@@ -128,9 +128,6 @@ class Response:
         Seconds spent on the steps; building a scene and compiling are not included.
     setup_s : float
         Seconds spent on what comes before the steps, where that was measured.
-    driver : str
-        What took an engine's steps: "compiled" (its compiled loop) or "python", followed by the
-        reason where the engine has such a loop that could not be used; empty for other sources.
     message : str
         Why a response failed, or what a reader should know about it.
     reason : Reason or None
@@ -162,7 +159,6 @@ class Response:
     steps: int = 0
     wall_s: float = 0.0
     setup_s: float = 0.0
-    driver: str = ""
     message: str = ""
     reason: Reason | None = None
     history: History | None = field(default=None, repr=False)

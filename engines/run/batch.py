@@ -73,11 +73,7 @@ def run_together(name: str, scenes: Sequence[Scene]) -> list[Response]:
             for scene, dt_s in zip(scenes, steps_s, strict=True)
         ]
         step_s = _take_all(worlds, seen)
-        driver = worlds.driver
-        return [
-            replace(each.response(step_s * each.steps), setup_s=setup_s, driver=driver)
-            for each in seen
-        ]
+        return [replace(each.response(step_s * each.steps), setup_s=setup_s) for each in seen]
     finally:
         worlds.close()
 

@@ -70,13 +70,11 @@ def run(engine: str | Engine, scene: Scene) -> Response:
             preset.stepping,
             asked.resolution(scene.system),
         )
-        looped = scene.compiled and getattr(world, "drive", None) is not None
     finally:
         world.close()
     said = [] if scene.preset or preset is asked.best else [f"as {asked.name}:{preset.name}"]
-    driver = "compiled" if looped else "python"
     message = "; ".join(filter(None, (*said, response.message)))
-    return replace(response, setup_s=built - began, driver=driver, message=message)
+    return replace(response, setup_s=built - began, message=message)
 
 
 def build(engine: Engine, scene: Scene) -> World:

@@ -8,9 +8,8 @@ STUDY = Study(
 
 For each engine and preset the cheapest step that keeps the error with every finer one published, or
 that nothing does: on the 24 cases along all steps, on the paper's with each preset as it is
-declared, and on random cases where κ is small (`rocking steps`). Beside it stand how many random
-cases are off there, and who takes the steps, a compiled loop or Python. It runs nothing: it reads
-the published tables, and names them.""",
+declared, and on random cases where κ is small (`rocking steps`). Beside it stands how many random
+cases are off there. It runs nothing: it reads the published tables, and names them.""",
     tables=("advice.csv",),
     claims=("advice",),
     drawings={"advice": ("draw_advice", "advice")},

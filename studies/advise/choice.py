@@ -36,7 +36,6 @@ NOTHING = "nothing does"
 
 NONE_FOUND: Row = {
     **dict.fromkeys(("value", "dt_s", "wall_s", "max_error"), math.nan),
-    "driver": "",
     **dict.fromkeys(("runs", "cases", *COUNTS, "extreme_cases", "extreme_off"), 0),
 }
 """Columns of advice about a setting, where there is none."""

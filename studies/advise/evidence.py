@@ -39,7 +39,7 @@ TABLES = (LADDER, *PAPER, EXTREME, SHAPES)
 """Tables without which there is no advice."""
 
 SETTINGS = ["engine", "preset", "value", "wall_s", "runs", "cases", "max_error"]
-"""Columns of `settings`, but for the driver."""
+"""Columns of `settings`."""
 
 
 def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
@@ -56,19 +56,16 @@ def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     DataFrame
         engine, preset; value: p dt, or the accuracy knob of an engine with steps of its own, nan
         for a step that the library has in seconds; wall_s: mean time of a case [s]; runs: how
-        often each was timed at least; driver: who took the steps; cases; max_error: the largest
-        error of the peak, inf where an outcome is wrong or a case failed. Those of a preset from
-        coarse to fine.
+        often each was timed at least; cases; max_error: the largest error of the peak, inf where
+        an outcome is wrong or a case failed. Those of a preset from coarse to fine.
     """
     found = pd.concat([along_steps(published, engines), of_paper(published, engines)])
-    found["driver"] = found.groupby(SETTING[:2])["driver"].transform("first")
     # where both tables know a setting, the ladder's time is the best of several
     lines = found.groupby(SETTING, sort=False, dropna=False, as_index=False).agg(
         wall_s=("wall_s", "first"),
         runs=("runs", "first"),
         cases=("cases", "sum"),
         max_error=("max_error", "max"),
-        driver=("driver", "first"),
     )
     uses = [ENGINES[name].preset(preset) for name, preset in lines[SETTING[:2]].to_numpy()]
     steps = lines["value"].fillna(pd.Series(map(declared_step, uses)))
@@ -101,7 +98,7 @@ def along_steps(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     )
     lines = joint(pd.read_csv(published / LADDER)).merge(uses, on="method")
     worst = lines["max_error"].where(lines["failed"] == 0, math.inf)
-    return lines.assign(max_error=worst)[[*SETTINGS, "driver"]]
+    return lines.assign(max_error=worst)[SETTINGS]
 
 
 def of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:

@@ -30,6 +30,7 @@ from studies.kit.naming import Engines
 from studies.kit.options import DEFAULT_RUNNING, check_written
 from studies.kit.plan import Plan, carry_out
 from studies.kit.standing import Height, Width, posed_block
+from studies.measures.costs import OUTDATED, STEPPED
 from studies.measures.published import published_in, too_slippery
 from studies.measures.words import listed
 
@@ -104,7 +105,7 @@ def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: flo
         _beyond(block, published),
         written if len(engines) == 1 else f"{ASK} {engines[0]}",
         too_slippery(friction),
-        fill(made, WIDTH),
+        fill(f"{made} {STEPPED} {OUTDATED}", WIDTH),
     ]
     return "\n\n".join(filter(None, parts))
 

@@ -25,7 +25,7 @@ from studies.measures.words import duration, gathered, per_cent
 
 USE = ["target", "engine", "preset"]
 SHOWN = (
-    *(*USE, "value", "dt_s", "wall_s", "driver", "runs", "max_error", "cases"),
+    *(*USE, "value", "dt_s", "wall_s", "runs", "max_error", "cases"),
     *("random_off", "random_cases", "extreme_off", "extreme_cases", "cheapest"),
 )
 """Columns of the table of what keeps an error."""
@@ -146,12 +146,6 @@ def _costs(lines: pd.DataFrame) -> str:
             words = f"costs {cost} ({line['engine']} {line['preset']})"
         said.append((per_cent(float(str(target))), words))
     return gathered(said)
-
-
-def best_by_driver(lines: pd.DataFrame) -> dict[str, pd.Series[Any]]:
-    """Return for each loop that takes steps, compiled or Python, the cheapest line of advice."""
-    kept = lines[lines["message"] == ""].sort_values("wall_s").drop_duplicates("driver")
-    return {str(line["driver"]): line for _, line in kept.sort_values("driver").iterrows()}
 
 
 def setting_text(line: pd.Series[Any]) -> str:

@@ -150,12 +150,9 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
         taken = [elsewhere.take(other, jobs, journal, makers) for other in others]
         answered: list[Job] = []
         with _going_on(journal, out, len(jobs)):
-            drivers: dict[str, set[str]] = {}
 
             def reduce(job: Job, response: Response) -> Row:
                 answered.append(job)
-                if response.driver:
-                    drivers.setdefault(job.asked.engine, set()).add(response.driver)
                 return plan.reduce(job, response)
 
             rows = run_jobs(jobs, executor=executor, reduce=reduce, journal=journal, makers=makers)
@@ -165,10 +162,6 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
                 write_table(out / f"{name}.csv", table)
             computed = {"rows": len(rows), "computed": len(answered)}
             found: dict[str, Any] = computed if jobs else {}
-            if drivers:
-                # for each engine that this run asked what took its steps
-                words = {engine: ", ".join(sorted(drivers[engine])) for engine in sorted(drivers)}
-                found["drivers"] = words
             found |= {"also": taken} if taken else {}
             record["made"] = makers.of_tables(jobs, tabulate)
             provenance.finish(path, record, began, **found)

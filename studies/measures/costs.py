@@ -1,15 +1,20 @@
-"""What a case costs, in words: its time, of how many runs, and who took the steps."""
+"""What a case costs, in words: its time, and of how many runs it is the best."""
 
 import math
-from collections.abc import Iterable
 
 from studies.measures.words import duration
 
 LEAST_RUNS = 5
 """A time is of the best of so many runs at least, or marked."""
 
-LOOPS = {"compiled": "stepped by a compiled loop", "python": "stepped from Python"}
-"""Who takes an engine's steps one after the other, in words."""
+STEPPED = "A compiled loop over `mj_step` takes MuJoCo's steps; Python takes all others."
+"""Said beside times of a step or of a case."""
+
+OUTDATED = (
+    "PyBullet's published times, but for `naive` and `recommended`, are those of a retired "
+    "compiled loop, shorter than today's."
+)
+"""Said beside them until they are measured again."""
 
 
 def cost_text(wall_s: float, runs: float, each: str = "") -> str:
@@ -28,8 +33,3 @@ def cost_text(wall_s: float, runs: float, each: str = "") -> str:
         return "-"
     few = f" ({runs:.0f} run{'s' if runs != 1 else ''})" if runs < LEAST_RUNS else ""
     return f"{duration(wall_s)}{each}{few}"
-
-
-def loop_of(drivers: Iterable[str]) -> str:
-    """Return who took the steps of several runs, a key of LOOPS: python if it was so in any."""
-    return max((driver.partition(":")[0] for driver in drivers), default="")

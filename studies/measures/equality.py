@@ -21,7 +21,7 @@ from studies.kit.tables import read_table
 
 MEASURED = frozenset(
     {
-        *("wall_s", "setup_s", "step_s", "engine_s", "adapter_s", "pose_s", "look_s"),
+        *("wall_s", "setup_s", "step_s", "engine_s"),
         *("seconds", "cases_a_second", "us_a_case_and_core", "busy", "times_exact"),
         *("memory_kib", "real_time_factor"),
     }

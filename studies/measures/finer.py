@@ -52,6 +52,5 @@ def joint(table: pd.DataFrame) -> pd.DataFrame:
         max_error=("max_error", "max"),
         wall_s=("wall_s", "sum"),
         runs=("runs", "min"),
-        driver=("driver", "first"),
     )
     return found.assign(wall_s=found["wall_s"] / found["cases"]).reset_index()

@@ -12,13 +12,13 @@ import pandas as pd
 
 from analytic.models import MODELS
 from engines import ENGINES
-from studies.advise.words import best_by_driver, setting_text
+from studies.advise.words import setting_text
 from studies.catalogue import CHAPTERS
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import table_in
 from studies.measures.claims import TABLE, Finding, read_findings, said_once
-from studies.measures.costs import LEAST_RUNS, LOOPS, cost_text
+from studies.measures.costs import LEAST_RUNS, cost_text
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.posed import Posed, posed
 from studies.measures.presets import engine_of, in_order, is_engine
@@ -172,28 +172,25 @@ def models(published: Path) -> dict[str, str]:
 
 
 def advised(published: Path) -> list[list[str]]:
-    """Return the cheapest advice for each error with each loop, a row for each error."""
+    """Return the cheapest advice for each error, a row for each error."""
     rows = []
     for target, group in table_in(published / "advice", "advice").groupby("target", sort=False):
-        best = best_by_driver(group)
-        cells = [cell for loop in LOOPS for cell in _advice(best.get(loop))]
-        rows.append([per_cent(float(str(target))), *cells])
+        best = group[group["message"] == ""].nsmallest(1, "wall_s")
+        cells = [_advice(line) for _, line in best.iterrows()] or [("nothing does", "–")]
+        rows.append([per_cent(float(str(target))), *cells[0]])
     return rows
 
 
-def _advice(line: pd.Series[Any] | None) -> tuple[str, str]:
-    if line is None:
-        return "nothing does", "–"
+def _advice(line: pd.Series[Any]) -> tuple[str, str]:
     at = setting_text(line)
     # what is advised has none off whose κ is small: the line above the table says so
     off = f"{out_of(line['random_off'], line['random_cases'])} off" if line["random_cases"] else ""
     return (f"{at}; {off}" if off else at), cost_text(line["wall_s"], line["runs"])
 
 
-def choices_of(published: Path) -> dict[str, dict[tuple[float, str], dict[str, Any]]]:
-    """Return for each loop which setting for which accuracy, as of `choices`."""
-    lines = pd.read_csv(published / "precision" / "work-precision.csv")
-    return {loop: choices(lines, loop) for loop in LOOPS}
+def choices_of(published: Path) -> dict[tuple[float, str], dict[str, Any]]:
+    """Return which setting for which accuracy, as of `choices`."""
+    return choices(pd.read_csv(published / "precision" / "work-precision.csv"))
 
 
 def counts(published: Path) -> dict[str, int]:

@@ -18,7 +18,7 @@ from studies.kit import provenance
 from studies.kit.arguments import BadInputError
 from studies.kit.journal import PROVENANCE
 from studies.kit.provenance import check, seal
-from studies.measures.costs import LOOPS, cost_text
+from studies.measures.costs import OUTDATED, STEPPED, cost_text
 from studies.measures.presets import in_words
 from studies.measures.published import dictionary
 from studies.measures.words import capital, duration, meant, out_of, part, per_cent
@@ -99,7 +99,12 @@ def pages(root: Path) -> dict[Path, str]:
     environment.filters |= {function.__name__: function for function in said}
     asked = (cost_text, engine_facts, facts, meant, out_of, scene_facts, table)
     environment.globals |= {each.__name__.rpartition(".")[2]: each for each in asked}
-    environment.globals |= {"ENGINES": ENGINES, "LOOPS": LOOPS, "WORDS": WORDS}
+    environment.globals |= {
+        "ENGINES": ENGINES,
+        "OUTDATED": OUTDATED,
+        "STEPPED": STEPPED,
+        "WORDS": WORDS,
+    }
     environment.globals |= {"TARGETS": TARGETS, "infinite": math.inf, "verdict": verdict}
     environment.globals |= {"TROUBLES": TROUBLES, "captions": scenes.STUDY.captions}
     return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {

@@ -9,8 +9,8 @@ STUDY = Study(
 Every method along its own setting (tolerance, step, solver iterations) on 12 cases of the paper
 whose peaks lie before or after impacts, and 12 near overturning. Timing is serial, on one thread,
 warm, the best of five runs or more, until the shortest two agree, or of fewer where these take
-longer than half a second: how many is a column, and so is who takes the steps of an engine, a
-compiled loop or Python. Building and compiling are apart. Resumable.""",
+longer than half a second: how many is a column. A compiled loop over mj_step takes MuJoCo's steps;
+Python takes all others. Building and compiling are apart. Resumable.""",
     tables=("precision.csv", "work-precision.csv", "shares.csv", "scenes.csv", "reference.csv"),
     others=("findings.txt", "cost.txt"),
     chapter=Chapter(

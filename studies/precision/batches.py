@@ -95,7 +95,6 @@ def measured(name: str, preset: str, count: int, budget_s: float) -> list[dict[s
             "engine": name,
             "preset": preset,
             "taken": way,
-            "driver": found[0].driver,
             "worlds": len(scenes),
             "batches": len(groups) if way is AT_ONCE else 0,
             "world_steps": steps,

@@ -23,27 +23,23 @@ EXACT = "Taylor series"
 """The method to whose time the others are compared."""
 
 
-def choices(table: pd.DataFrame, loop: str = "") -> dict[tuple[float, str], dict[str, Any]]:
+def choices(table: pd.DataFrame) -> dict[tuple[float, str], dict[str, Any]]:
     """Return the cheapest setting of an engine below each target, on typical cases and on all.
 
     Parameters
     ----------
     table : DataFrame
         The columns of work-precision.csv.
-    loop : str, optional
-        compiled or python, for the engines alone that are stepped so; by default all.
 
     Returns
     -------
     dict
         (target, TYPICAL or ALL) -> value, and setting: it and its method in words; wall_s: mean
         time of a case [s], and over_exact: that over the exact solution's, both over these cases;
-        runs, driver; typical_error, near_error: its largest errors, inf where an outcome is wrong.
-        Nothing where no setting reaches the target.
+        runs; typical_error, near_error: its largest errors, inf where an outcome is wrong. Nothing
+        where no setting reaches the target.
     """
     engines = engines_of(table)
-    if loop:
-        engines = engines[engines["driver"] == loop]
     errors = engines.set_index(["method", "value", "set"])["max_error"]
     among = {
         TYPICAL: (engines[engines["set"] == TYPICAL], table[table["set"] == TYPICAL]),
@@ -58,7 +54,7 @@ def choices(table: pd.DataFrame, loop: str = "") -> dict[tuple[float, str], dict
                 for name in (TYPICAL, NEAR)
             )
             found[target, cases] = {
-                **best[["value", "wall_s", "runs", "driver"]],
+                **best[["value", "wall_s", "runs"]],
                 "setting": setting_of(best),
                 "over_exact": best["wall_s"] / exact_cost(timed),
                 "typical_error": typical,

@@ -26,7 +26,7 @@ from studies.kit.options import DEFAULT_RUNNING
 from studies.kit.plan import Plan, Tables, carry_out
 from studies.kit.pool import Pool
 from studies.kit.tables import table_in
-from studies.measures.costs import LOOPS, loop_of
+from studies.measures.costs import STEPPED
 from studies.measures.differences import posed_cases
 from studies.measures.words import duration, listed
 from studies.precision import COST
@@ -125,7 +125,6 @@ def scene_table(engines: Sequence[str], budget_s: float) -> pd.DataFrame:
                     "outcome": found.outcome.value,
                     "wall_s": found.wall_s,
                     "runs": found.runs,
-                    "driver": loop_of([found.driver]),
                     "steps": found.steps,
                     "step_s": found.wall_s / max(found.steps, 1),
                     "setup_s": found.setup_s,
@@ -206,7 +205,7 @@ def report(folder: Path) -> str:
     )
     as_it_is = scenes.groupby("engine")["wall_s"].transform("first")
     tables = {
-        "Where the time of a step goes, and the step over the engine's own part": (
+        "Time of a step, and over the engine's own part of it": (
             shares.assign(over_engine=shares["step_s"] / shares["engine_s"])
         ),
         "What a scene leaves out, put back one at a time; cost: time over the scene as it is": (
@@ -225,16 +224,13 @@ def report(folder: Path) -> str:
 
 
 def finding(shares: pd.DataFrame) -> str:
-    """Say how long a step takes with each loop, and how much of that is the engine's own."""
-    shares = shares.dropna(subset=["step_s"])
-    words = [
-        f"{listed([_step(line) for _, line in lines.iterrows()])} with {engine}"
-        for engine, lines in shares.groupby("engine", sort=False)
-    ]
-    return f"A step of the stepping loop takes {', '.join(words)}."
+    """Say how long a step takes with each engine, and how much of that is the engine's own."""
+    known = shares.dropna(subset=["step_s"])
+    steps = [f"{_step(line)} with {line['engine']}" for _, line in known.iterrows()]
+    return f"A step takes {listed(steps)}. {STEPPED}"
 
 
 def _step(line: pd.Series[Any]) -> str:
     own = line["engine_s"]
     part = "" if math.isnan(own) else f" (the engine's own {duration(own)})"
-    return f"{duration(line['step_s'])} {LOOPS[line['driver'].lower()]}{part}"
+    return f"{duration(line['step_s'])}{part}"

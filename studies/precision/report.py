@@ -16,7 +16,6 @@ from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.drawing.kept import tell
 from studies.kit.tables import write_table
-from studies.measures.costs import LOOPS, loop_of
 from studies.measures.words import duration, listed, part, times
 from studies.precision import STUDY
 from studies.precision.choices import ALL, EXACT, TYPICAL, cheapest_below, choices, exact_cost
@@ -31,7 +30,7 @@ CASE = ("figure", "aspect", "width_m", "omega_over_p")
 
 FINEST = (
     *("method", "value", "median_error", "max_error", "impact_error", "energy_drift"),
-    *("steps", "wall_s", "runs", "driver", "setup_s"),
+    *("steps", "wall_s", "runs", "setup_s"),
 )
 """Columns of the table of the finest settings."""
 
@@ -60,7 +59,7 @@ def finding(table: pd.DataFrame) -> str:
         return "No engine setting reaches any of the errors asked for on every typical case."
     asked = {TYPICAL: "on typical cases", ALL: "with those near overturning"}
     engines = [
-        f"{times(chosen['over_exact'])} that {words} ({LOOPS[chosen['driver']]})"
+        f"{times(chosen['over_exact'])} that {words} ({chosen['setting']})"
         for cases, words in asked.items()
         if (chosen := found.get((reached[-1], cases)))
     ]
@@ -124,7 +123,6 @@ def work_precision(compared: pd.DataFrame) -> pd.DataFrame:
         wall_s=("wall_s", "mean"),
         setup_s=("setup_s", "mean"),
         runs=("runs", "min"),
-        driver=("driver", lambda found: loop_of(found.fillna(""))),
         pulse_s=("pulse_s", "mean"),
     ).reset_index()
     table["real_time_factor"] = table["pulse_s"] / table["wall_s"]

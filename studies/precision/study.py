@@ -144,7 +144,6 @@ def reduce(job: Job, response: Response) -> Row:
         **summary(job, response),
         "setup_s": round(response.setup_s, 9),
         "runs": response.runs if isinstance(response, Timed) else 0,
-        "driver": response.driver,
         "impact_times": json.dumps(times),
         "energy_drift": energy_drift(job, response),
     }

@@ -34,7 +34,6 @@ from studies.cases.drawn import draw
 from studies.kit.journal import PROVENANCE
 from studies.kit.provenance import seal
 from studies.kit.tables import table_in
-from studies.measures.costs import LOOPS
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.published import PUBLISHED
 
@@ -139,7 +138,6 @@ def test_what_is_off_is_counted_at_the_step_that_is_advised(tried, capsys):
     line = next(line for line in told.splitlines() if "mujoco  landing" in line).split()
     assert line[-5:-3] == ["1", "40"]
     assert RANDOM in " ".join(told.split())
-    assert landing["driver"] in LOOPS
 
 
 def test_a_target_that_only_a_lucky_step_keeps_says_what_misses(tried):

@@ -127,24 +127,6 @@ def test_a_table_is_written_to_the_bit(tmp_path):
     assert back["x"].tolist() == values
 
 
-def stepped(job, source):
-    compiled = {"compiled": job.labels["table"] != "python"} if source.engine else {}
-    return source.call(job.block, job.motion, **compiled)
-
-
-def test_provenance_says_what_took_the_engines_steps(tmp_path):
-    engine, python, exact = (
-        replace(job(label), source=source)
-        for label, source in (("any", "mujoco"), ("python", "mujoco"), ("any", "exact"))
-    )
-    for jobs in ([engine, exact], [engine, python, exact], [engine, python, exact]):
-        fill(STUDY, Plan(jobs=jobs, ask=stepped), tmp_path)
-    runs = json.loads((tmp_path / "provenance.json").read_text())["runs"]
-    # of what the run itself asked: the last one found all rows in the folder
-    drivers = [run.get("drivers") for run in runs]
-    assert drivers == [{"mujoco": "compiled"}, {"mujoco": "python"}, None]
-
-
 def test_provenance_tells_a_run_that_computes_all_from_one_that_goes_on(tmp_path):
     for jobs in ([job("a")], [job("a"), job("b")]):
         carry_out(STUDY, Plan(jobs=jobs, ask=answered), tmp_path, DEFAULT_RUNNING, str)

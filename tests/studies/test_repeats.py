@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from analytic.response import Response
-from studies.measures.costs import cost_text, loop_of
+from studies.measures.costs import cost_text
 from studies.precision import repeats
 from studies.precision.repeats import LEAST_S, enough
 
@@ -49,9 +49,3 @@ def test_a_time_of_few_runs_is_marked():
     assert cost_text(0.0124, 5) == "12.4 ms"
     assert cost_text(0.0124, 4) == "12.4 ms (4 runs)"
     assert cost_text(0.0124, 1) == "12.4 ms (1 run)"
-
-
-def test_the_loop_of_several_runs_is_python_if_it_was_so_in_any():
-    assert loop_of(["compiled", "compiled"]) == "compiled"
-    assert loop_of(["compiled", "python: its memory is not where it was", ""]) == "python"
-    assert loop_of(["", ""]) == ""
