@@ -73,10 +73,9 @@ def compared():
     return pd.concat({"kept": kept, "today": today}, axis=1).fillna("no row")
 
 
-if __name__ == "__main__":
-    if sys.argv[1:] == ["write"]:
-        pd.DataFrame(rows(), columns=COLUMNS).to_csv(TABLE, index=False)
-    else:
-        both = compared()
-        apart = (both["kept"] != both["today"]).any(axis=1)
-        print(both[apart].to_string(), f"{(~apart).sum()} of {len(both)} rows are equal", sep="\n")
+if __name__ == "__main__" and sys.argv[1:] == ["write"]:
+    pd.DataFrame(rows(), columns=COLUMNS).to_csv(TABLE, index=False)
+elif __name__ == "__main__":
+    both = compared()
+    apart = (both["kept"] != both["today"]).any(axis=1)
+    print(both[apart].to_string(), f"{(~apart).sum()} of {len(both)} rows are equal", sep="\n")
