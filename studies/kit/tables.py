@@ -19,13 +19,13 @@ SHOWN = 60
 """Rows of a table that are shown as text; its CSV has all."""
 
 
-FORMULA = re.compile(r"'*[=+\-@].", re.DOTALL)
-"""How words begin that a spreadsheet takes for a formula, or that were quoted once."""
+FORMULA = re.compile(r"'*[=+\-@].+")
+"""Words in one line that a spreadsheet takes for a formula, or that were quoted once."""
 
 
 def quoted(word: object) -> object:
     """Return a word with an apostrophe before it if a spreadsheet would take it for a formula."""
-    if not isinstance(word, str) or not FORMULA.match(word):
+    if not isinstance(word, str) or not FORMULA.fullmatch(word):
         return word
     with suppress(ValueError):
         float(word)
