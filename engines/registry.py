@@ -2,9 +2,11 @@
 
 import inspect
 import os
-from collections.abc import Iterator, Mapping
+import sys
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 
 from engines.declaration import Engine
 from engines.undeclared import undeclared
@@ -40,6 +42,10 @@ VARIANTS = {
 study tries on the one that is listed (`engines.parts.factors.Level.source`) are these."""
 
 
+elsewhere: Callable[[str], Engine] | None = None
+"""Declares an engine of another package where its code must not be loaded in this process."""
+
+
 class UnloadableError(OSError, ValueError):
     """An engine that stands nowhere; the message is one line that says why."""
 
@@ -48,9 +54,7 @@ class Engines(Mapping[str, Engine]):
     """Name -> declaration, read when an engine is first asked for; no library is imported."""
 
     def __getitem__(self, name: str) -> Engine:
-        listed = _places()
-        place = listed[name] if name in listed else EntryPoint(name, VARIANTS[name], GROUP)
-        return _declared(name, place)
+        return _declared(name, _place(name))
 
     def __iter__(self) -> Iterator[str]:
         return iter(_places())
@@ -70,13 +74,18 @@ def _places() -> dict[str, EntryPoint]:
     return own | {name: others[name] for name in sorted(others.keys() - own.keys())}
 
 
+def _place(name: str) -> EntryPoint:
+    listed = _places()
+    return listed[name] if name in listed else EntryPoint(name, VARIANTS[name], GROUP)
+
+
 def _further() -> list[EntryPoint]:
     pairs = (word.partition("=") for word in os.environ.get(FURTHER, "").split())
     return [EntryPoint(name, place, GROUP) for name, _, place in pairs]
 
 
-def announce(place: str) -> str:
-    """Make an engine known that no package announces; return its name.
+def named(place: str) -> str:
+    """Return the name of an engine that no package announces.
 
     Parameters
     ----------
@@ -87,7 +96,7 @@ def announce(place: str) -> str:
     Raises
     ------
     ValueError
-        If neither stands there, or the name is taken.
+        If neither stands there.
     """
     module, _, attribute = place.partition(":")
     if not (module and attribute) or any(mark in place for mark in "= \t\n"):
@@ -95,13 +104,29 @@ def announce(place: str) -> str:
     found = _found(place, EntryPoint(module, place, GROUP))
     if not isinstance(found, Engine):
         _refuse_other_than_builder(place, found)
-    name = found.name if isinstance(found, Engine) else module.rpartition(".")[2]
+    return found.name if isinstance(found, Engine) else module.rpartition(".")[2]
+
+
+def announce(place: str, name_of: Callable[[str], str] = named) -> str:
+    """Make an engine known that no package announces; return its name.
+
+    Parameters
+    ----------
+    place : str
+    name_of : callable, optional
+        As `named`, for a place whose code must not be loaded in this process.
+
+    Raises
+    ------
+    ValueError
+        As `named` does, and if the name is taken.
+    """
+    name = name_of(place)
     if name in ENGINES:
         raise ValueError(f"engine {place!r} is called {name!r}, as another is")
     os.environ[FURTHER] = " ".join([*os.environ.get(FURTHER, "").split(), f"{name}={place}"])
     _places.cache_clear()
-    _declared(name, _places()[name])
-    return name
+    return ENGINES[name].name
 
 
 def _refuse_other_than_builder(place: str, found: object) -> None:
@@ -119,6 +144,9 @@ def _refuse_other_than_builder(place: str, found: object) -> None:
 
 
 def _found(name: str, place: EntryPoint) -> object:
+    here = str(Path.cwd())
+    if _is_foreign(place) and place.dist is None and sys.path[0] != here:
+        sys.path.insert(0, here)  # no package announces it: it may stand in this folder
     try:
         return place.load()
     except KeyboardInterrupt:
@@ -128,15 +156,24 @@ def _found(name: str, place: EntryPoint) -> object:
         raise UnloadableError(f"engine {name!r} {words}") from error
 
 
+def _is_foreign(place: EntryPoint) -> bool:
+    return place.module.partition(".")[0] != __name__.partition(".")[0]
+
+
 @cache
 def _declared(name: str, place: EntryPoint) -> Engine:
-    """Load a declaration.
+    return elsewhere(name) if elsewhere and _is_foreign(place) else loaded(name)
+
+
+def loaded(name: str) -> Engine:
+    """Return an engine as its code, which is loaded in this process, declares it.
 
     Raises
     ------
     ValueError
-        If what stands there is none, or one of another name.
+        If what stands at its place is none, or one of another name.
     """
+    place = _place(name)
     found = _found(name, place)
     if callable(found) and place in _further():
         return undeclared(name, found, place.module.partition(".")[0])

@@ -1,10 +1,12 @@
 """Fixtures of more than one file of tests."""
 
 from collections import Counter
+from contextlib import nullcontext
 
 import pytest
 
 from engines import registry
+from studies.kit import foreign
 from studies.kit.jobs import Job
 from studies.score import study as score
 from studies.sources.registry import SOURCES
@@ -12,9 +14,10 @@ from studies.sources.registry import SOURCES
 
 @pytest.fixture(autouse=True)
 def in_this_process(request, monkeypatch):
-    """Let no job need a process of its own, but in tests of what these do."""
+    """Let no job and no engine need a process of its own, but in tests of what these do."""
     if "processes" not in request.keywords:
         monkeypatch.setattr(Job, "needs_process", False)
+        monkeypatch.setattr(foreign, "kept_out", nullcontext)
 
 
 @pytest.fixture

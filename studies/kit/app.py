@@ -90,6 +90,7 @@ REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
 def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
     from cyclopts import CycloptsError, UnknownOptionError
 
+    from studies.kit import foreign
     from studies.kit.arguments import BadInputError
     from studies.kit.journal import FolderError
 
@@ -105,13 +106,14 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
         if not argument.strip() or (name.startswith("--") and equals and not value.strip()):
             return refusing.refuse(f"{name.strip() or before} is empty; it must be given")
     try:
-        code = make_app(studies)(
-            arguments,
-            exit_on_error=False,
-            print_error=False,
-            verbose=False,
-            result_action="return_value",
-        )
+        with foreign.kept_out():
+            code = make_app(studies)(
+                arguments,
+                exit_on_error=False,
+                print_error=False,
+                verbose=False,
+                result_action="return_value",
+            )
     except UnknownOptionError as error:
         return refusing.refuse(_unknown_option(error))
     except (CycloptsError, BadInputError, FolderError) as error:

@@ -23,6 +23,9 @@ PACKAGES = ("analytic", "engines", "studies")
 OF_TYPES = ("annotation", "returns")
 """Parts of a syntax tree that are annotations."""
 
+files_elsewhere: dict[str, str] = {}
+"""Module -> its file, of modules that are loaded in another process, and not in this one."""
+
 Name = tuple[str, str]
 """A module and what is defined at its top level; all of it where that is empty."""
 
@@ -64,6 +67,8 @@ class Module:
 
 def names_of(something: Callable[..., Any]) -> set[Name]:
     """Return the definition that a function stands in, and those of functions that it was given."""
+    if kept := getattr(something, "definitions", None):
+        return set(kept)  # of a function that is not loaded here
     given: set[Name] = set()
     while isinstance(something, partial):
         given = given.union(*(names_of(value) for value in something.args if callable(value)))
@@ -221,7 +226,7 @@ class Reached:
         package = name.partition(".")[0]
         if package in PACKAGES:
             return _inside(name, self._root)
-        loaded = getattr(sys.modules.get(name), "__file__", None)
+        loaded = getattr(sys.modules.get(name), "__file__", None) or files_elsewhere.get(name)
         path = Path(loaded) if loaded and package in self._further else None
         return path if path and path.suffix == ".py" else None
 

@@ -4,7 +4,9 @@ Each is waited for no longer than its task may take; it is ended with all that i
 another one is started when it is needed.
 """
 
+import io
 import os
+import pickle
 import resource
 import signal
 import sys
@@ -155,6 +157,12 @@ class _Worker:
         self.process.join()
         self._channel.close()
 
+    def _read(self, answer: bytes) -> Any:
+        try:
+            return _Reader(io.BytesIO(answer)).load()
+        except Exception as error:
+            raise TaskError(f"its answer cannot be read: {one_line(error)}") from None
+
     def _receive(self, limit_s: float) -> Any:
         ready = wait([self._channel, self.process.sentinel, self._stopped], limit_s)
         if not ready:
@@ -163,9 +171,18 @@ class _Worker:
             raise CancelledError
         with suppress(EOFError, ConnectionResetError):
             if self._channel.poll():
-                return self._channel.recv()
+                return self._read(self._channel.recv_bytes())
         self.process.join(ENDING_S)
         raise TaskError(_cause_of_death(self.process.exitcode or 0))
+
+
+class _Reader(pickle.Unpickler):
+    """Reads an answer, for which no package is loaded that is not: it may be anybody's code."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        if module.partition(".")[0] not in sys.modules:
+            raise pickle.UnpicklingError(f"{module}.{name} is not loaded here")
+        return super().find_class(module, name)
 
 
 def _cause_of_death(exitcode: int) -> str:
@@ -188,7 +205,11 @@ def _work(channel: Connection) -> None:
             channel.send((False, one_line(error)))
             continue
         channel.send(None)  # what it needs is loaded: its time runs from here
-        channel.send(_answer(call, arguments))
+        answer = _answer(call, arguments)
+        try:
+            channel.send(answer)
+        except Exception as error:  # it cannot be sent
+            channel.send((False, one_line(error)))
 
 
 def _answer(call: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[bool, Any]:

@@ -9,30 +9,28 @@ where the position is changed first.
 from __future__ import annotations
 
 import math
-from typing import cast
 
 import numpy as np
 import pandas as pd
 
-from analytic import RigidBlock, SinePulse
 from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
 from engines.declaration import Stepping
-from engines.run.drive import NotAvailableError, build
+from engines.run.drive import NotAvailableError
 from engines.world import ContactPhase, Moment, Step, SteppedWorld
 from studies.kit.jobs import Job
 from studies.kit.journal import Row
 from studies.kit.refusing import brief, one_line
 from studies.measures.words import listed
-from studies.sources.registry import Source, scene_of
+from studies.score.release import turn_errors, world_of
+from studies.sources.registry import Source
 
-BLOCK = RigidBlock(width=0.5, height=1.5)
-UNFELT = SinePulse(amplitude=1e-9, omega=6.2832)
-"""A motion is posed, and never reached: the steps here leave the base where it is."""
 STEP = 0.02
 """p dt."""
 THROWN, ALONE, AFTER = 4, 24, 4
 """Steps of the throw, those in which nothing pulls, and those after the one that pulls."""
+FOUND = ("declared", "measured", "turn_error", "turn_error_half")
+"""What is observed, and the columns of the table."""
 PULL = 10.0
 """Pull up, and later down, in units of gravity."""
 OFF = 0.47
@@ -54,9 +52,9 @@ def ask_for_moment(job: Job, source: Source) -> Response:
     Returns
     -------
     Response
-        Its observables are declared and measured: moments in steps from the begin of one. Failed,
-        with the reason, of a preset that takes its own steps, an engine that is not available or
-        raises, and one that a pull does not move as it should.
+        Its observables are declared and measured, moments in steps from the begin of one, and the
+        errors of `turn_errors`. Failed, with the reason, of a preset that takes its own steps, an
+        engine that is not available or raises, and one that a pull does not move as it should.
 
     Raises
     ------
@@ -65,14 +63,13 @@ def ask_for_moment(job: Job, source: Source) -> Response:
     """
     if source.used.stepping is Stepping.OWN:
         return Response.failure("not asked: it takes no steps that others choose")
-    frame = "base" if "base" in source.declared.frames else None  # a base that moves is pulled, too
-    scene = scene_of(job.block, job.motion, source.preset, step=STEP, frame=frame)
     try:
-        world = cast(SteppedWorld, build(source.declared, scene))
+        world = world_of(source, STEP)
     except NotAvailableError as error:
         return Response.failure(str(error))
     try:
         heights, declared = flown(world, STEP / job.block.p, job.block.gravity), world.moment.value
+        turn_error, turn_error_half = turn_errors(source)
     except Exception as error:  # it is anybody's code
         return Response.failure(one_line(error))
     finally:
@@ -85,6 +82,7 @@ def ask_for_moment(job: Job, source: Source) -> Response:
         )
     measured = Moment.NEXT.value - (within - before) / (after - before)
     observed = {"declared": declared, "measured": float(measured)}
+    observed |= {"turn_error": turn_error, "turn_error_half": turn_error_half}
     return Response(outcome=Outcome.SLID, peak_ratio=0.0, observables=observed)
 
 
@@ -101,9 +99,9 @@ def flown(world: SteppedWorld, dt_s: float, gravity: float) -> FloatArray:
 
 
 def reduced(response: Response) -> Row:
-    """Return the columns of a row: the moments, in steps from the begin of one."""
-    moments = {name: response.observables.get(name, math.nan) for name in ("declared", "measured")}
-    return {"outcome": response.outcome.value, **moments, "message": brief(response.message)}
+    """Return the columns of a row: the moments, in steps from the begin of one, and the errors."""
+    found = {name: response.observables.get(name, math.nan) for name in FOUND}
+    return {"outcome": response.outcome.value, **found, "message": brief(response.message)}
 
 
 def judged(table: pd.DataFrame) -> pd.DataFrame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
@@ -23,12 +24,13 @@ from studies.precision.report import with_errors, work_precision
 from studies.scenes.told import SCENES, lines_of
 from studies.score import STUDY
 from studies.score.moments import accusation, judged
+from studies.score.release import suspicion
 from studies.stability.study import failures, verdicts
 
 
 def report(folder: Path) -> str:
     """Draw a folder's figures, and write and return its page."""
-    engine = ENGINES[provenance.record_of(folder)["settings"]["engine"]]
+    engine = scored(provenance.record_of(folder)["settings"]["engine"])
     asked, extremes = posed(table_of(folder, "sweep")).words, table_of(folder, "extremes")
     wrong = failures(extremes)[["case", "source", "reason", "remedy"]]
     along = ladder(folder)
@@ -50,8 +52,22 @@ def report(folder: Path) -> str:
         moments
     )
     tables |= beyond(folder)
-    said = " ".join(filter(None, (accusation(moments), introduction(engine), finding(folder))))
+    wrongs = accusation(moments), suspicion(moments)
+    said = " ".join(filter(None, (*wrongs, introduction(engine), finding(folder))))
     return tell(STUDY, folder, tables, said)
+
+
+def scored(source: str) -> Engine:
+    """Return an engine, with one of its presets alone where that is named.
+
+    Raises
+    ------
+    ValueError
+        If it has no such preset.
+    """
+    name, colon, preset = source.partition(":")
+    engine = ENGINES[name]
+    return replace(engine, presets=(engine.preset(preset),)) if colon else engine
 
 
 def finding(folder: Path) -> str:

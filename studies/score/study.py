@@ -3,6 +3,7 @@
 import functools
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from json import dumps
 from pathlib import Path
@@ -12,15 +13,18 @@ from cyclopts import Parameter
 
 from analytic.response import Response
 from engines import ENGINES, Scene
+from engines.registry import OWN, UnloadableError, named
 from engines.scene import perhaps
 from studies.kit.arguments import (
     BadInputError,
     Out,
     Place,
+    as_bad_input,
     check_writable,
     refuse_repeats,
     several_or_none,
 )
+from studies.kit.foreign import apart
 from studies.kit.jobs import Job, summary
 from studies.kit.jobs import ask as plain
 from studies.kit.journal import Row
@@ -33,9 +37,9 @@ from studies.scenes import cases as scenes
 from studies.scenes import frames
 from studies.scenes.study import reduce as reduce_scene
 from studies.score import STUDY
-from studies.score.loading import guarded, problem_elsewhere
-from studies.score.moments import BLOCK, UNFELT, accusation, ask_for_moment, reduced
-from studies.score.report import finding, published, report, table_of
+from studies.score.moments import accusation, ask_for_moment, reduced
+from studies.score.release import BLOCK, UNFELT, problem_of, suspicion
+from studies.score.report import finding, published, report, scored, table_of
 from studies.score.result import read, required, result_of, since
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES, Source, announce, presets_of
 from studies.stability import study as stability
@@ -74,8 +78,9 @@ def command(
     Parameters
     ----------
     engine
-        Its name, or MODULE:ENGINE where its declaration stands, or MODULE:build of what builds its
-        world, in this folder or among the installed packages.
+        Its name, perhaps with one of its presets after a colon; or MODULE:ENGINE where its
+        declaration stands, or MODULE:build of what builds its world, in this folder or among the
+        installed packages.
     quick
         Every 11th case of two figures, every other step, fewer extremes: a minute or two.
     require
@@ -87,7 +92,8 @@ def command(
     against
         Such a file of an earlier release: what moved since is said.
     """
-    declared = ENGINES[known(engine)]
+    name = known(engine)
+    declared = scored(name)
     # what cannot be held against it is refused now, and not after the last run
     requirements = [required(text, declared) for text in require or ()]
     if require is not None:
@@ -96,7 +102,9 @@ def command(
     published()
     if json:
         check_writable("--json", json)
-    code = carry_out(STUDY, plan(declared.name, quick, running.time_limit), out, running, report)
+    if declared.name not in OWN:
+        refuse_what_is_no_world(engine, f"{declared.name}:{declared.best.name}")
+    code = carry_out(STUDY, plan(name, quick, running.time_limit), out, running, report)
     result = result_of(out, declared)
     if json:
         write_text(json, dumps(result, indent=1, ensure_ascii=False) + "\n")
@@ -107,31 +115,38 @@ def command(
         print(line)
     if earlier or judged:
         code = int(not all(holds for holds, _ in judged))
-    return code or int(bool(accusation(table_of(out, "moments"))))
+    moments = table_of(out, "moments")
+    return code or int(bool(accusation(moments) or suspicion(moments)))
 
 
 def known(engine: str) -> str:
-    """Return the name of an engine; one at a place is made known.
+    """Return an engine by its name, with its preset where that is named; make a place's known.
 
     Raises
     ------
     BadInputError
         If there is none.
     """
-    if engine in ENGINES:
+    if engine.partition(":")[0] in ENGINES:
+        with as_bad_input("ENGINE: "):
+            scored(engine)
         return engine
     if ":" not in engine:
-        words = f"{', '.join(ENGINES)}, MODULE:ENGINE or MODULE:build"
+        words = f"{', '.join(ENGINES)}, ENGINE:PRESET, MODULE:ENGINE or MODULE:build"
         near = perhaps(engine, list(ENGINES))
         raise BadInputError(f"ENGINE is {engine!r}{near}; it must be one of {words}")
-    sys.path.insert(0, str(Path.cwd()))
-    if problem := problem_elsewhere(engine):
-        raise BadInputError(f"ENGINE: {problem}")
+    sys.path.append(str(Path.cwd()))  # not first: what this process imports is found before it
     try:
-        with guarded():
-            return announce(engine)
+        return announce(engine, functools.partial(apart, named))
     except ValueError as error:
         raise BadInputError(f"ENGINE: {error}") from error
+
+
+def refuse_what_is_no_world(place: str, source: str) -> None:
+    """Refuse an engine whose world lacks a method, or is read the wrong way round."""
+    with suppress(UnloadableError):  # its cases will say so
+        if problem := apart(problem_of, source):
+            raise BadInputError(f"ENGINE is {place!r}: {problem}")
 
 
 def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
@@ -148,7 +163,8 @@ def plan(name: str, quick: bool, time_limit_s: float) -> Plan:
 
 def score_jobs(name: str, quick: bool) -> list[Job]:
     """Return the jobs of the tables, preset by preset; those of further scenes where it can."""
-    uses = [f"{name}:{preset}" for preset in presets_of(SOURCES[name])]
+    name, _, preset = name.partition(":")
+    uses = [f"{name}:{each}" for each in ([preset] if preset else presets_of(SOURCES[name]))]
     swept = sweep_jobs(QUICK_FIGURES if quick else FIGURES, uses, DEFAULT_EFFORT)
     if quick:
         swept = [job for number, job in enumerate(swept) if number // len(uses) % QUICK_EVERY == 0]

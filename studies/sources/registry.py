@@ -19,7 +19,8 @@ from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import Ability, System, layout_of
 from engines.parts.compiled import interpreted_first
-from engines.registry import OWN, VARIANTS
+from engines.registry import OWN, VARIANTS, named
+from engines.registry import announce as announce_engine
 from engines.scene import Scene, one_of, perhaps
 from studies.sources.rolling import rolled, space_scene
 from studies.sources.scipy_peers import solve_ivp_response
@@ -242,11 +243,9 @@ SOURCES: dict[str, Source] = {
 """Every source; a new model or engine appears here by being registered in its own storey."""
 
 
-def announce(place: str) -> str:
+def announce(place: str, name_of: Callable[[str], str] = named) -> str:
     """Make an engine a source that no package announces; see `engines.registry.announce`."""
-    from engines.registry import announce as announce_engine
-
-    name = announce_engine(place)
+    name = announce_engine(place, name_of)
     SOURCES[name] = _engine(name, ENGINES[name].best.name)
     return name
 

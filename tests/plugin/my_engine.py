@@ -10,6 +10,7 @@ class World:
 
     def __init__(self, scene, settings, dt_s):
         (block,), self.space = scene.bodies, pymunk.Space()
+        self.space.iterations = 30  # with 10 the corner that it turns about creeps
         at, self.body = block.at, pymunk.Body(block.mass, block.inertia[1])
         self.body.position, self.body.angle = (at.x, at.z), -at.theta
         self.body.velocity, self.body.angular_velocity = (at.velocity_x, at.velocity_z), -at.rate

@@ -2,27 +2,33 @@
 
 import math
 import os
-import signal
 import sys
 import time
+from dataclasses import asdict, fields
 from functools import partial
 from pathlib import Path
 
 import hostile
 import pandas as pd
 import pytest
+import rocking_moreau
 from commanding import CASE, PATIENCE_S, python, refused
 
 from analytic import RigidBlock, SinePulse
+from engines import ENGINES, registry
 from engines.registry import FURTHER
+from engines.run.drive import run as drive
 from engines.run.drive import simulate_world
 from engines.run.monitor import compile_monitor
 from engines.scene import Scene
 from studies.__main__ import run
+from studies.kit import foreign
+from studies.kit.arguments import BadInputError
 from studies.kit.executors import Local
-from studies.kit.jobs import Job, summary
+from studies.kit.fingerprint import names_of, reached
+from studies.kit.identity import Makers
+from studies.kit.jobs import Job, ask, summary
 from studies.kit.runner import run_jobs
-from studies.score import loading
 from studies.score import study as score
 from studies.sources.registry import SOURCES, Source
 
@@ -94,17 +100,6 @@ def test_what_an_engine_started_is_ended_with_its_process(rows):
     assert [process for process in rows[1] if not ended(process)] == []
 
 
-HARMFUL = """
-import os, signal, sys, time
-from hostile import Calm as World
-print("a word")
-os.system("echo a word")
-os.chdir("/")
-signal.signal(signal.SIGINT, signal.SIG_IGN)
-time.monotonic = time.perf_counter = lambda: "noon"
-sys.stdout.close()
-os.close(1)
-"""
 LOADED = {
     "exits": ("import sys; sys.exit()", "cannot be loaded from exits:World: SystemExit"),
     "exits_at_once": ("import os; os._exit(0)", "ended by itself with exit code 0"),
@@ -128,7 +123,7 @@ def announced(alone, monkeypatch, tmp_path):
 def test_what_harms_while_it_is_loaded_is_refused_in_a_line(module, announced, monkeypatch, capfd):
     source, words = LOADED[module]
     Path(f"{module}.py").write_text(source)
-    monkeypatch.setattr(loading, "LOADING_S", 2.0 if module == "loops" else PATIENCE_S)
+    monkeypatch.setattr(foreign, "LOADING_S", 2.0 if module == "loops" else PATIENCE_S)
     line = refused(capfd, ["score", f"{module}:World", "--out", "out"], words)
     assert line.startswith(f"rocking: ENGINE: engine '{module}:World' ")
     assert not Path("out").exists()
@@ -147,14 +142,88 @@ def test_an_engine_that_was_announced_and_cannot_be_loaded_is_a_line(source, tmp
     assert line.startswith("rocking: engine 'mine'")
 
 
-def test_what_an_engine_changes_while_it_is_loaded_is_taken_back(announced, tmp_path, capfd):
-    Path("harmful.py").write_text(HARMFUL)
-    before = time.perf_counter, sys.stdout, signal.getsignal(signal.SIGINT)
-    assert score.known("harmful:World") == "harmful"
-    assert (time.perf_counter, sys.stdout, signal.getsignal(signal.SIGINT)) == before
-    assert Path.cwd() == tmp_path
-    os.write(1, b"written\n")
-    assert capfd.readouterr() == ("written\n", "")
+def test_an_engine_is_declared_where_its_code_is_not_loaded(announced):
+    text = Path(rocking_moreau.__file__).read_text()
+    Path("mine.py").write_text(text.replace('name="moreau"', 'name="mine"'))
+    with foreign.kept_out():
+        name = score.known("mine:ENGINE")
+        told, asked = ENGINES[name], partial(Job, labels={}, block=BLOCK, motion=PULSE)
+        code = reached(names_of(told.build)).digests()
+        made = Makers(ask, summary).of(asked(source="mine:fixed"))
+        with pytest.raises(BadInputError, match="friction is -1"):
+            asked(source="mine:fixed", options={"settings": {"friction": -1.0}})
+    assert name == "mine"
+    assert "mine" not in sys.modules
+    assert "mine.py" in code.keys() & made.keys()
+    declared = registry.loaded("mine")
+    assert declared.build is sys.modules["mine"].MoreauWorld
+    assert reached(names_of(declared.build)).digests() == code
+    assert (told.name, told.factors, told.frames) == (declared.name, declared.factors, ("base",))
+    for here, there in zip(declared.presets, told.presets, strict=True):
+        assert asdict(here.settings) == asdict(there.settings)
+        same = {item.name for item in fields(here)} - {"settings"}
+        assert all(repr(getattr(here, item)) == repr(getattr(there, item)) for item in same)
+    assert simulate_scene(told) == simulate_scene(declared)
+
+
+def simulate_scene(engine):
+    return summary(None, drive(engine, Scene(system=BLOCK, motion=PULSE))) | {"wall_s": 0.0}
+
+
+JUDGED = """
+from studies.score import study as score
+everything = score.score_jobs
+def some(*asked):
+    return list({(job.labels["table"], job.source): job for job in everything(*asked)}.values())
+score.score_jobs = some
+from studies.__main__ import main
+main()
+"""
+"""A score with a job of each table and preset, by the command line."""
+ON_IMPORT = {
+    "ends_soon": "later(1.0, os._exit, 0)",
+    "ends_at_exit": "atexit.register(os._exit, 0)",
+    "ends_the_second_time": "again() and os._exit(0)",
+    "crashes_the_second_time": "again() and ctypes.string_at(0)",
+    "sets_a_timer": "signal.setitimer(signal.ITIMER_REAL, 1.0)",
+    "leaves_a_thread": "threading.Thread(target=threading.Event().wait).start()",
+    "writes_nowhere": "os.write = lambda number, data: len(data)",
+    "prints_and_closes": "print('a word'); os.system('echo a word'); os.close(1)",
+    "ignores": "[signal.signal(number, signal.SIG_IGN) for number in (1, 2, 15)]",
+    "stops_the_clock": "os.chdir('/'); time.monotonic = time.perf_counter = lambda: 'noon'",
+}
+"""Module -> what it does to the process that imports it."""
+IMPORTED = """
+import atexit, ctypes, os, signal, threading, time
+from pathlib import Path
+def later(seconds, call, *given):
+    act = lambda: time.sleep(seconds) or call(*given)
+    threading.Thread(target=act, daemon=True).start()
+def again(place=Path(__file__).with_suffix(".again")):
+    return place.exists() or place.touch()
+{}
+class World:
+    def __init__(self, *_):
+        raise ValueError("no world")
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("module", ON_IMPORT)
+def test_what_an_engine_does_when_it_is_imported_decides_no_exit_code(module, tmp_path):
+    (tmp_path / f"{module}.py").write_text(IMPORTED.format(ON_IMPORT[module]))
+    asked = ("score", f"{module}:World", "--quick", "--out", "out", "--require", "failed=0")
+    done = python("-c", JUDGED, *asked, cwd=tmp_path)
+    if module.endswith("the_second_time"):
+        assert (done.returncode, done.stdout) == (2, "")
+        (line,) = done.stderr.splitlines()
+        assert f"engine '{module}' cannot be loaded: the process " in line
+        return
+    assert done.returncode == 1
+    assert "falls short: landing:failed must be at most 0, and is 1" in done.stdout
+    assert "a word" not in done.stdout
+    lines = (tmp_path / "out" / "journal.jsonl").read_text().splitlines()
+    assert sum(f'"{module}:' in line for line in lines) >= 9
 
 
 @pytest.mark.parametrize("module", ["quits", pytest.param("my_engine", marks=pytest.mark.slow)])

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
 from given import BLOCK
 
 from engines import installed_engines
@@ -15,7 +16,8 @@ from engines.run.monitor import Monitor
 from engines.world import Moment
 from studies.__main__ import run
 from studies.score import study as score
-from studies.score.moments import CLOSE, OFF, UNFELT, accusation, judged
+from studies.score.moments import CLOSE, OFF, accusation, judged
+from studies.score.release import UNFELT, problem_of, suspicion
 from studies.sources.registry import announce, presets_of, resolve, scene_of
 
 
@@ -40,10 +42,79 @@ def test_no_engine_is_accused(name):
     substeps = {"rapier:naive": 4, "rapier:naive-base-at-rest": 4, "rapier:recommended": 8}
     expected = [0.5 - 0.5 / substeps.get(source, 1) for source in table["source"]]
     assert lag[~np.isnan(lag)] == pytest.approx(np.array(expected)[~np.isnan(lag)], abs=CLOSE)
-    assert accusation(table) == ""
+    assert (accusation(table), suspicion(table)) == ("", "")
     told = judged(table).set_index("source")["velocity"]
     for source, count in substeps.items():
         assert source not in told or told[source].endswith(f"as by {count} steps within a step")
+
+
+@pytest.mark.parametrize("right", ["Heavy", "Standard"])
+def test_what_changes_no_motion_is_no_wrong_quantity(right, alone):
+    pytest.importorskip("pymunk")
+    table = moments_of(announce(f"wrong:{right}"))
+    assert table["turn_error"].to_numpy() == pytest.approx(0.0, abs=1e-3)
+    assert suspicion(table) == ""
+
+
+TO_CORNER, OF_CORNER = 1.0 / 3.0, 4.0 / 3.0
+"""Moments of inertia of a block about its centre and a corner, in units of m R^2."""
+QUANTITIES = {
+    "Inertia": OF_CORNER / (OF_CORNER + 0.03 * TO_CORNER) - 1.0,
+    "Mass": 1.03 * OF_CORNER / (1.03 + TO_CORNER) - 1.0,
+    "Gravity": 0.01,
+}
+"""Class -> by what part the block is turned too fast."""
+
+
+@pytest.mark.parametrize("wrong", [*QUANTITIES, "Width"])
+def test_an_error_that_does_not_shrink_with_the_step_is_a_wrong_quantity(wrong, alone):
+    pytest.importorskip("pymunk")
+    table = moments_of(announce(f"wrong:{wrong}"))
+    errors = table[["turn_error", "turn_error_half"]].to_numpy()
+    assert errors == pytest.approx(QUANTITIES.get(wrong, 0.0346), abs=5e-4)
+    said = suspicion(table)
+    assert said.startswith("Wrong quantity: wrong:fixed and wrong:landing.")
+    assert f"{abs(errors[0, 0]):.2%}" in said
+    assert "mass, inertia, size or gravity" in said
+
+
+def test_an_error_that_shrinks_or_is_small_or_the_librarys_own_is_none():
+    table = pd.DataFrame(
+        [("mujoco:fixed", 4e-3, 2e-3), ("mujoco:landing", 9e-4, 9e-4), ("mujoco:naive", 0.1, 0.1)],
+        columns=["source", "turn_error", "turn_error_half"],
+    )
+    assert suspicion(table) == ""
+    assert "mujoco:fixed" in suspicion(table.assign(turn_error=-2e-3))
+
+
+NO_WORLDS = {
+    "NoStep": "has no method step; it must have state, fault, close, step",
+    "NoState": "has no method state",
+    "NoFault": "has no method fault",
+    "NoClose": "has no method close",
+    "NoMoment": "has no moment; it must be one of Moment.MIDDLE, END and NEXT",
+    "Turned": "theta -0.161 of a block put to 0.161: the sign is wrong",
+    "Backwards": "rate -0.0982 of a block put to 0.0982: the sign is wrong",
+    "Mirrored": "pulled towards +x, its block turns to theta -0.0256: the sign is wrong",
+}
+
+
+@pytest.mark.parametrize("wrong", NO_WORLDS)
+def test_what_is_no_world_is_told_in_a_line(wrong, alone):
+    pytest.importorskip("pymunk")
+    assert NO_WORLDS[wrong] in problem_of(announce(f"wrong:{wrong}"))
+
+
+def test_a_world_is_nothing_to_complain_of(alone):
+    pytest.importorskip("pymunk")
+    assert problem_of(announce("my_engine:World")) == problem_of("moreau:landing") == ""
+
+
+def test_what_is_no_world_is_refused_before_anything_runs(alone, tmp_path, capsys):
+    pytest.importorskip("pymunk")
+    asked = ("score", "wrong:NoFault", "--out", tmp_path / "out")
+    refused(capsys, asked, "ENGINE is 'wrong:NoFault'", "no method fault")
+    assert not (tmp_path / "out").exists()
 
 
 WRONG = [

@@ -71,6 +71,7 @@ def test_an_engine_that_is_announced_makes_no_row_stale(alone, tmp_path, capsys)
     ("place", "message"),
     [
         ("nothing", "ENGINE is 'nothing'; it must be one of pybullet, mujoco"),
+        ("pymunk:fixd", "preset of pymunk is 'fixd', perhaps 'fixed'; it must be one of naive"),
         ("no_such_module:ENGINE", "No module named 'no_such_module'"),
         ("my_engine:Wheel", "has no attribute 'Wheel'"),
         (":World", "it must be like my_package.mine:ENGINE"),
@@ -144,6 +145,21 @@ def test_the_page(alone, few, tmp_path, capsys):
     assert rows["peak_ratio"].iloc[0] == again.peak_ratio > 0.0
     peaks = json.loads(kept.read_text())["peaks"]["fixed"]
     assert peaks["6/half-sine/0.05/2/0.5/0.1"] == again.outcome.value == "overturned"
+
+
+def test_one_preset_of_an_engine_is_scored_alone(few, tmp_path, capsys):
+    pytest.importorskip("pymunk")
+    kept, out = tmp_path / "kept.json", tmp_path / "out"
+    asked = ("score", "pymunk:fixed", "--quick", "--out", str(out), "--json", str(kept))
+    assert run([*asked, "--require", "outcomes=2", "fixed:failed=0"]) == 0
+    page = capsys.readouterr().out
+    assert "holds: fixed:outcomes must be at least 2" in page
+    result = json.loads(kept.read_text())
+    assert (result["engine"], [*result["presets"]], [*result["peaks"]]) == (
+        *("pymunk", ["fixed"], ["fixed"]),
+    )
+    refused(capsys, [*asked, "--require", "landing:failed=0"], "--require", "fixed and a colon")
+    refused(capsys, ["score", "pymunk", "--quick", "--out", out], "same study and settings")
 
 
 @pytest.mark.slow
