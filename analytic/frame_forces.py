@@ -82,7 +82,8 @@ def frame_demands(
     Notes
     -----
     From SAMPLES states up to FREE_TIME after the motion, all impacts and, of a frame that survives,
-    its last swing. Of one that overturns the forces count while abs(theta) is below alpha.
+    its last swing. Of one that overturns the forces count while abs(theta) is below alpha; one that
+    starts beyond asks for nothing.
 
     Examples
     --------
@@ -98,10 +99,10 @@ def frame_demands(
     found = list(_pushes(frame, motion, response))
     needs = [_demands(frame, *push, spacing, depth) for push in found]
     return Demands(
-        base=max(need.base for need in needs),
-        top=max(need.top for need in needs),
-        pressing=min(need.pressing for need in needs),
-        spacing=max(need.spacing for need in needs),
+        base=max((need.base for need in needs), default=0.0),
+        top=max((need.top for need in needs), default=0.0),
+        pressing=min((need.pressing for need in needs), default=1.0),
+        spacing=max((need.spacing for need in needs), default=0.0),
     )
 
 
@@ -180,7 +181,8 @@ def _pushes(frame: RockingFrame, motion: Motion, response: Response) -> Iterator
         np.concatenate((shaken, 0.0 * last)),
     )
     kept = np.abs(states.theta) < frame.alpha
-    yield _forces(frame, States(*(part[kept] for part in states))), False
+    if kept.any():
+        yield _forces(frame, States(*(part[kept] for part in states))), False
     if struck.size:
         yield _impulses(frame, np.sign(before[:1])), True
 

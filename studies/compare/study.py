@@ -289,15 +289,15 @@ def compare(
     compared = {
         row["source"]: {**row, **_beside(row["response"], exact, block), **known} for row in rows
     }
-    faults = _faults(block, posed, yours.friction)
+    faults = _faults(block, posed, yours.friction, exact.outcome is Outcome.FAILED)
     said = (compared["exact"]["message"], slides(exact, yours.friction), *faults)
     compared["exact"]["message"] = "; ".join(filter(None, said))
     return [compared[name] for name in sources]
 
 
-def _faults(block: System, posed: Posed, friction: float | None) -> tuple[str, ...]:
+def _faults(block: System, posed: Posed, friction: float | None, failed: bool) -> tuple[str, ...]:
     """Return what of a frame's premises a friction does not hold."""
-    if friction is None or not isinstance(block, RockingFrame):
+    if friction is None or not isinstance(block, RockingFrame) or failed:
         return ()
     sizes = {"spacing": SPACING * block.height, "depth": BEAM_DEPTH * block.height}
     return frame_faults(block, posed.motion, posed.start, **sizes, friction=friction)
