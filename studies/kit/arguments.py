@@ -48,8 +48,10 @@ def _read(allowed: str, convert: Callable[[type, str], Any]) -> Any:
         except ValueError as error:
             # an argument that is not an option has no keyword
             name = token.keyword or "FOLDER"
-            beside = ", with a decimal point" if type_ is float and "," in token.value else ""
-            if underflows(token.value):
+            beside = ""
+            if type_ is float and "," in token.value:
+                beside = ", with a decimal point"
+            elif type_ is float and underflows(token.value):
                 beside = f", and no smaller than {math.ulp(0.0):g} unless 0"
             raise BadInputError(
                 f"{name} is {token.value!r}; it must be {allowed}{beside}"

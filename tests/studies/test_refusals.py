@@ -24,6 +24,7 @@ compare CASE --friction 1e-400 | --friction is '1e-400' | 0 or more, and no smal
 compare CASE --tilt 0,5 | --tilt is '0,5'; it must be a finite number, with a decimal point
 blocks list.csv --record X.AT2 --scale 1 0,5 --out DIR | --scale is '0,5' | decimal point
 blocks comma.csv --record X.AT2 --out DIR | width is '0,5'; it must be from | with a decimal point
+compare CASE --baseline 1e-400 | --baseline is '1e-400'; it must be among none, constant, linear
 compare CASE --rate fast | --rate is 'fast' | finite
 compare CASE --phase inf | --phase is 'inf' | finite
 compare CASE --jobs 0 | --jobs is '0' | positive whole number
