@@ -16,7 +16,7 @@ from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from engines.parts.compiled import PACKAGE
 from studies.cases.paper import HISTORIES
-from studies.kit.arguments import Positive
+from studies.kit.arguments import TimeLimit
 from studies.kit.jobs import Job
 from studies.kit.options import Computing
 from studies.kit.provenance import (
@@ -47,7 +47,7 @@ class Line(NamedTuple):
     remedy: str = ""
 
 
-def command(*, time_limit: Positive = 600.0) -> int:
+def command(*, time_limit: TimeLimit = 600.0) -> int:
     """Look at this installation.
 
     Parameters

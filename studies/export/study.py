@@ -20,7 +20,7 @@ from engines.run import ground
 from engines.scene import perhaps
 from engines.watching.sliding import LEAST_SLIP, SLIP_RATE
 from studies.cases.paper import free_rocking_window
-from studies.kit.arguments import BadInputError, Place, Positive, Step, refuse_both
+from studies.kit.arguments import BadInputError, Place, Step, TimeLimit, refuse_both
 from studies.kit.drafts import draft_place
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
@@ -45,7 +45,7 @@ def command(
     standing: Standing = ONE_BLOCK,
     step: Step | None = None,
     yours: Yours = NOT_YOURS,
-    time_limit: Positive = 60.0,
+    time_limit: TimeLimit = 60.0,
 ) -> int:
     """Write a scene as a script that needs an engine's library alone, with what to expect of it.
 

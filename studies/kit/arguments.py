@@ -89,6 +89,9 @@ Finite = Annotated[float, _number("a finite number", -LARGEST)]
 Count = Annotated[int, _number(f"a positive whole number up to {MOST}", 1, MOST)]
 """A positive whole number."""
 
+TimeLimit = Annotated[float, _number("a positive number of seconds up to 1e9", math.ulp(0.0), 1e9)]
+"""A time that clocks hold [s]."""
+
 LEAST_STEP = 1e-7
 """The smallest step: ten million of them last as long as 1/p."""
 

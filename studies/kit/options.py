@@ -21,6 +21,7 @@ from studies.kit.arguments import (
     Place,
     Positive,
     Step,
+    TimeLimit,
     one_of,
     refuse_given,
     several_or_none,
@@ -112,7 +113,7 @@ class Computing:
     """
 
     jobs: Count | None = None
-    time_limit: Positive = 60.0
+    time_limit: TimeLimit = 60.0
     cluster: str | None = None
 
     def executor(
@@ -212,7 +213,7 @@ class PatientRunning(Running):
         a remedy, is given up.
     """
 
-    time_limit: Positive = 180.0
+    time_limit: TimeLimit = 180.0
 
 
 PATIENT_RUNNING = PatientRunning()

@@ -15,7 +15,7 @@ import pandas as pd
 from analytic.response import Outcome, Response
 from studies.cases.paper import free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.kit.arguments import Out, Positive
+from studies.kit.arguments import Out, TimeLimit
 from studies.kit.jobs import Job, ask, summary
 from studies.kit.journal import Row
 from studies.kit.naming import CORE, Engines
@@ -39,7 +39,7 @@ def command(
     out: Out,
     engines: Engines = CORE,
     quick: bool = False,
-    time_limit: Positive = 60.0,
+    time_limit: TimeLimit = 60.0,
 ) -> int:
     """Report error against run time, and what a scene does not need.
 

@@ -55,6 +55,7 @@ sweep --figure 6 6 --out DIR | --figure names 6 twice | once
 sweep --time-limit 0 --out DIR | --time-limit is '0' | positive
 histories --figure 3 --out DIR | --figure is '3' | 2, 4, 5
 ensemble --out DIR --family none | --family is 'none' | ricker
+sweep --time-limit 1e150 --out DIR | --time-limit is '1e150' | up to 1e9
 precision --out DIR --time-limit nan | --time-limit is 'nan' | positive
 free --out DIR --jobs 1.5 | --jobs is '1.5' | whole
 animate CASE --slower 0 --out film.gif | --slower is '0' | positive
