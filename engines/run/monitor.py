@@ -96,7 +96,8 @@ def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
     if first.slide.on:
         see_slide(first.slide, rows[0], events[0], first.pace.time, pose_in(state, 0))
         return not (first.slide.done or first.slide.problem)
-    see_spread(first.spread, state)
+    see_spread(first.spread, state, first.watch.alpha)
+    first.watch.beam_slide = first.spread.slide
     goes_on = False
     for body in range(len(runs)):
         watch = runs[body].watch
@@ -182,8 +183,9 @@ class Monitor:
         self.runs = Run.blank(max(rocking, 1))
         first = self.runs[0]
         begin_pace(first.pace, scene, dt_s, stepping, moment, resolution)
+        lands = stepping is Stepping.LANDING
         for run, body in zip(self.runs, scene.bodies[:rocking], strict=False):
-            begin_watch(run.watch, scene, body, dt_s, moment, resolution)
+            begin_watch(run.watch, scene, body, dt_s, lands, moment, resolution)
         begin_spread(first.spread, scene.layout)
         if not rocking:
             begin_slide(first.slide, scene)

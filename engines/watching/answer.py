@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import cast
 
 from analytic.response import History, Impact, Outcome, Problem, Reason, Response
 from engines.parts.compiled import FloatArray
@@ -11,12 +12,15 @@ from engines.watching.sliding import DISTANCE, SINCE, Slide, end_slip
 from engines.watching.sliding import WHEN as STOP
 from engines.watching.sliding import observables_of as observables_of_slide
 from engines.watching.watch import (
+    BEAM_SLIPPED,
     DIVERGED,
+    HOLD_WIDTHS,
     IMPACT,
     KIND,
     REST,
     SANK,
     SLID,
+    SLIPPED,
     THROWN,
     UPLIFT,
     WHEN,
@@ -26,14 +30,22 @@ from engines.watching.watch import (
 SINK_WIDTHS = 0.05
 """Of a corner deeper in the base than this part of the width a reader should know."""
 
+PIVOT_SLID = "the pivot slid {:.3g} m along the base"
+BEAM_SLID = "the beam slid {:.3g} m along the columns' tops"
+
 
 def problem_of(watch: Watch | Slide) -> Problem:
     """Return why the response is no longer that of what was posed, where there is a reason."""
+    if watch.problem in (SLIPPED, BEAM_SLIPPED):
+        slid = (PIVOT_SLID if watch.problem == SLIPPED else BEAM_SLID).format(watch.far)
+        most = HOLD_WIDTHS * 2.0 * cast(Watch, watch).half_width
+        assumed = f"steps that land on impacts assume that it holds, and allow at most {most:.3g} m"
+        return Problem(Reason.SLID, f"{slid}; {assumed}")
     words = {
         DIVERGED: (Reason.DIVERGED, "the engine's state is not finite"),
         SANK: (Reason.SANK, f"the block sank {watch.far:.3g} m, through the base"),
         THROWN: (Reason.THROWN, f"the block was thrown {watch.far:.3g} m off the base"),
-        SLID: (Reason.SLID, f"the pivot slid {watch.far:.3g} m along the base"),
+        SLID: (Reason.SLID, PIVOT_SLID.format(watch.far)),
     }
     return Problem(*words[int(watch.problem)])
 
@@ -72,10 +84,14 @@ def response_of(watch: Watch, events: FloatArray, history: History | None) -> Re
 
 
 def _remark(watch: Watch) -> str:
-    """Say what a reader should know of a usable response: how deep the block stood in its base."""
-    if watch.sunk <= 2.0 * watch.half_width * SINK_WIDTHS:
-        return ""
-    return f"the block sank {watch.sunk:.3g} m into the base"
+    """Say what a reader should know of a usable response: how deep it stood, how far it slid."""
+    width, said = 2.0 * watch.half_width, []
+    if watch.sunk > width * SINK_WIDTHS:
+        said.append(f"the block sank {watch.sunk:.3g} m into the base")
+    for words, far in ((PIVOT_SLID, watch.slide), (BEAM_SLID, watch.beam_slide)):
+        if far > width * HOLD_WIDTHS and not watch.slides:
+            said.append(words.format(far))
+    return "; ".join(said)
 
 
 def together(responses: Sequence[Response], observables: Mapping[str, float]) -> Response:

@@ -18,9 +18,9 @@ class Spread(State):
         How many there are, and the number of the beam's row; 0 where there is no beam.
     homes : float
         Where the beam's centre is while a column's is at 0 [m].
-    parting, tilt, drift : float
+    parting, tilt, drift, slide : float
         Largest difference of two columns' rotations [rad], largest rotation of the beam [rad], and
-        the largest distance by which it slid along the tops [m].
+        the largest distance by which it slid along the tops [m], at all and until they pass alpha.
     """
 
     columns: int
@@ -28,6 +28,7 @@ class Spread(State):
     parting: float
     tilt: float
     drift: float
+    slide: float
 
 
 def begin_spread(spread: Spread, layout: Layout) -> None:
@@ -44,13 +45,14 @@ def begin_spread(spread: Spread, layout: Layout) -> None:
 
 
 @shared
-def see_spread(spread: Spread, state: FloatArray) -> None:
+def see_spread(spread: Spread, state: FloatArray, alpha: float) -> None:
     """Take in a state.
 
     Parameters
     ----------
     spread : Spread, updated
     state : ndarray (bodies, 4), a `Pose` a row
+    alpha : float, slenderness [rad]
     """
     columns = spread.columns
     if columns == 0:
@@ -61,6 +63,8 @@ def see_spread(spread: Spread, state: FloatArray) -> None:
     # a corner on top of a column moves twice as far as the column's centre
     slid = state[columns][0] - 2.0 * state[0][0] - spread.homes
     spread.drift = max(spread.drift, abs(slid))
+    if abs(state[0][2]) <= alpha:
+        spread.slide = max(spread.slide, abs(slid))
 
 
 def observables_of(spread: Spread, alpha: float) -> Mapping[str, float]:

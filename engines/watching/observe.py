@@ -23,8 +23,10 @@ from engines.watching.swing import (
 )
 from engines.watching.watch import (
     AFTER,
+    BEAM_SLIPPED,
     BEFORE,
     DIVERGED,
+    HOLD_WIDTHS,
     HOVER_WIDTHS,
     IMPACT,
     KIND,
@@ -35,6 +37,7 @@ from engines.watching.watch import (
     SANK,
     SLID,
     SLIDE_WIDTHS,
+    SLIPPED,
     THROWN,
     THROWN_WIDTHS,
     UPLIFT,
@@ -136,7 +139,13 @@ def check(watch: Watch, low: float, centre: float) -> None:
         watch.problem, watch.far = SANK, -low
     elif low > THROWN_WIDTHS * width:
         watch.problem, watch.far = THROWN, low
-    elif watch.slide > SLIDE_WIDTHS * width and not watch.slides:
+    elif watch.slides:
+        return
+    elif watch.lands and watch.slide > HOLD_WIDTHS * width:
+        watch.problem, watch.far = SLIPPED, watch.slide
+    elif watch.lands and watch.beam_slide > HOLD_WIDTHS * width:
+        watch.problem, watch.far = BEAM_SLIPPED, watch.beam_slide
+    elif watch.slide > SLIDE_WIDTHS * width:
         watch.problem, watch.far = SLID, watch.slide
 
 

@@ -6,6 +6,7 @@ feel the base or to rest: that is a finding, and not asked here.
 """
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -31,7 +32,7 @@ from uses import (
     take_a_step,
 )
 
-from analytic import RigidBlock
+from analytic import RigidBlock, SinePulse
 from analytic.response import Outcome, Reason
 from engines import FRAMES
 from engines.declaration import UNTUNED, Stepping
@@ -223,6 +224,40 @@ def test_a_sliding_block_is_no_rocking_block(engine, preset):
     response = rocked(engine, pulse(1.3, 1.0), preset=preset, friction=0.05)
     assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.SLID)
     assert math.isnan(response.peak_ratio)
+
+
+FREEZER = RigidBlock(width=0.6, height=1.8)
+"""With a friction of 0.3 it slides flat: it would rock from B/H = 1/3 on."""
+
+
+def slid_of(response):
+    """Return the slip [m] that a message names, and what it says is allowed."""
+    named = re.search(r"the pivot slid (\S+) m along the base", response.message)
+    allowed = re.search(r"at most (\S+) m", response.message)
+    return float(named[1]), float(allowed[1]) if allowed else math.nan
+
+
+@every_landing_use
+@pytest.mark.parametrize("shaken", [(0.35, 6.28), (0.8, 9.0)])
+def test_steps_that_land_fail_by_name_once_their_pivot_slides(engine, preset, shaken):
+    """Both in a slide of 1.4 % of B, and in one in which MuJoCo's block would overturn."""
+    motion = SinePulse.in_g(shaken[0], omega=shaken[1])
+    found = rocked(engine, motion, system=FREEZER, preset=preset, friction=0.3)
+    assert (found.outcome, found.reason) == (Outcome.FAILED, Reason.SLID)
+    slid, allowed = slid_of(found)
+    assert allowed == pytest.approx(0.01 * FREEZER.width)
+    assert allowed <= slid < 2.0 * allowed
+
+
+@pytest.mark.parametrize("engine", CORE)
+def test_equal_steps_say_how_far_the_pivot_slid(engine):
+    """Whatever they call it: in MuJoCo it rocks by 0.007 alpha, in PyBullet it rests."""
+    motion = SinePulse.in_g(0.4, omega=6.28)
+    found = rocked(engine, motion, system=FREEZER, preset="fixed", friction=0.3)
+    assert found.slip_m > 0.01 * FREEZER.width
+    assert slid_of(found)[0] == pytest.approx(found.slip_m, rel=1e-2)
+    held = rocked(engine, pulse(1.3, 3.0, 2, FREEZER), system=FREEZER, preset="fixed")
+    assert (held.outcome, held.message) == (Outcome.ROCKED, "")
 
 
 @every_fixed_use

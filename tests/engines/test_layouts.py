@@ -1,5 +1,6 @@
 """Scenes of other things than one block: side by side, a frame, a slide; what they depend on."""
 
+import re
 from dataclasses import dataclass, replace
 
 import pytest
@@ -105,6 +106,20 @@ def test_a_frame_rocks_at_equal_steps(engine):
     exact, response = agreed(engine, SINE, system=frame(2.0), preset="fixed")
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1.5e-2)
     assert response.observables["parting"] < 1e-4
+
+
+def test_a_beam_that_slides_along_its_columns_is_named():
+    """Exactly it rocks by 0.142; PyBullet's columns rest, or nearly, below a beam that slides."""
+    system = RockingFrame(width=0.6, height=1.8, columns=2, load=0.5)
+    posed = {"system": system, "friction": 0.45}
+    motion = SinePulse.in_g(0.5, omega=6.28)
+    found = rocked("pybullet", motion, preset="landing", **posed)
+    assert (found.outcome, found.reason) == (Outcome.FAILED, Reason.SLID)
+    slid, allowed = re.search(r"the beam slid (\S+) m .* at most (\S+) m", found.message).groups()
+    assert float(slid) > float(allowed) == pytest.approx(0.01 * system.width)
+    even = rocked("pybullet", motion, preset="naive", **posed)
+    assert even.observables["drift_m"] > 0.01 * system.width
+    assert "the beam slid" in even.message
 
 
 def test_the_released_frame_swings_back():
