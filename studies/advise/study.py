@@ -40,7 +40,7 @@ def command(
     error: Annotated[tuple[Positive, ...], several] = TARGETS,
     engines: Annotated[Engines | None, Parameter(name=("--engines", "--engine"))] = None,
     dt: Positive | None = None,
-    friction: NotNegative | None = None,
+    friction: NotNegative = 0.8,
     width: Width = 0.5,
     height: Height = 1.5,
     published: Place | None = None,
@@ -59,8 +59,8 @@ def command(
         Your step [s], instead of errors: which error each preset with equal steps keeps with it,
         and its settings as formulas of the step DT, with their values.
     friction
-        Coefficient of friction with which settings are written out; by default the preset's, with
-        which they were measured.
+        Coefficient of friction for which settings are written out: some, as MuJoCo's impratio,
+        belong to it. The errors were measured with the presets' own.
     published
         Folder of the published tables; by default those that come with this project.
     out
@@ -89,14 +89,14 @@ def command(
 
 
 def _reverse(
-    published: Path, engines: Sequence[str], block: RigidBlock, dt: float, friction: float | None
+    published: Path, engines: Sequence[str], block: RigidBlock, dt: float, friction: float
 ) -> str:
     text = reverse_text(kept_errors(published, engines, block, dt), block, dt, friction)
     made = fill(f"From {LADDER}, made with {_versions(published)}.", WIDTH)
     return "\n\n".join(filter(None, (text, too_slippery(friction), made)))
 
 
-def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: float | None) -> str:
+def _text(lines: pd.DataFrame, block: RigidBlock, published: Path, friction: float) -> str:
     engines = lines["engine"].unique()
     written = settings_text(lines, block, friction) or "No setting to write out."
     made = f"From {listed(read_from(published))}, made with {_versions(published)}."

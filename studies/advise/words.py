@@ -42,7 +42,7 @@ def literal(
     preset: Preset,
     block: RigidBlock,
     value: float,
-    friction: float | None = None,
+    friction: float,
 ) -> str:
     """Return a preset's settings for a block in the library's words, a line each.
 
@@ -52,8 +52,8 @@ def literal(
     block : RigidBlock
     value : float
         p dt, or the preset's accuracy knob; nan for its own step.
-    friction : float, optional
-        By default the preset's.
+    friction : float
+        To which some of them belong.
 
     Raises
     ------
@@ -104,14 +104,14 @@ def preset_of(line: pd.Series[Any]) -> Preset:
     return ENGINES[str(line["engine"])].preset(str(line["preset"]))
 
 
-def settings_text(lines: pd.DataFrame, block: RigidBlock, friction: float | None = None) -> str:
+def settings_text(lines: pd.DataFrame, block: RigidBlock, friction: float) -> str:
     """Return the settings of the lines that found one, each once, in the libraries' words.
 
     Parameters
     ----------
     lines, block
         As for `tables`.
-    friction : float, optional
+    friction : float
         As for `literal`, with its error.
     """
     chosen = lines[lines["message"] == ""].drop_duplicates(["engine", "preset", "value"])
@@ -120,7 +120,8 @@ def settings_text(lines: pd.DataFrame, block: RigidBlock, friction: float | None
         engine, preset = ENGINES[str(line["engine"])], preset_of(line)
         value = float(line["value"])
         here = "" if math.isnan(line["dt_s"]) else f", here {duration(float(line['dt_s']))}"
-        head = f"{engine.title}, {preset.title}, {in_words(preset, value)}{here}"
+        at = f"{in_words(preset, value)}{here}, friction {friction:g}"
+        head = f"{engine.title}, {preset.title}, {at}"
         parts.append(f"{head}\n{indent(literal(engine, preset, block, value, friction), '  ')}")
     return "\n\n".join(parts)
 
@@ -194,9 +195,7 @@ def kept_errors(
     return pd.DataFrame(lines)
 
 
-def reverse_text(
-    lines: pd.DataFrame, block: RigidBlock, dt_s: float, friction: float | None
-) -> str:
+def reverse_text(lines: pd.DataFrame, block: RigidBlock, dt_s: float, friction: float) -> str:
     """Return the errors as a table; of one engine also its settings, as formulas and values.
 
     Parameters
@@ -206,7 +205,7 @@ def reverse_text(
     block : RigidBlock
     dt_s : float
         The step [s] that it was asked for.
-    friction : float or None
+    friction : float
         As for `literal`, with its error.
     """
     finding = (
@@ -225,7 +224,7 @@ def reverse_text(
     return "\n\n".join([as_text(finding, {title: lines.drop(columns="p_dt")}), *parts])
 
 
-def _written(line: pd.Series[Any], block: RigidBlock, dt_s: float, friction: float | None) -> str:
+def _written(line: pd.Series[Any], block: RigidBlock, dt_s: float, friction: float) -> str:
     engine = ENGINES[str(line["engine"])]
     preset = engine.preset(str(line["preset"]))
 
@@ -233,7 +232,7 @@ def _written(line: pd.Series[Any], block: RigidBlock, dt_s: float, friction: flo
         return literal(engine, preset, block, step_s * block.p, friction)
 
     values = at(dt_s)
-    head = f"{engine.title}, {preset.title}, DT = {dt_s:g} s"
+    head = f"{engine.title}, {preset.title}, DT = {dt_s:g} s, friction {friction:g}"
     try:
         formulas = by_step(at)
     except ValueError:

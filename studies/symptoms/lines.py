@@ -173,7 +173,7 @@ QUOTED_E = 0.6
 
 HELPS = 0.5
 """A setting helps if it leaves no more than this part of what there is by default, both at the
-p dt of all and at the library's own step."""
+p dt of all and at the library's own step; of peaks, if it lowers the median error, too."""
 
 NUMBERS = ("before", "after", "tuned", "landing", "before_own", "after_own")
 """Columns of sizes: by default, with one setting, and with all; the first two at the own step."""
@@ -291,6 +291,9 @@ def _helping(mine: pd.DataFrame, column: str) -> pd.DataFrame:
     most = math.inf if usual["failed"] else HELPS * abs(float(usual[column]))
     tried = mine[(mine["preset"] == DEFAULT) & (mine["factor"] != "")]
     tried = tried[(tried["factor"] != OWN_STEPS) & (tried["failed"] == 0) & ~tried["worse"]]
+    if column == MEASURED[0].column:
+        median = math.inf if usual["failed"] else float(usual["median_error"])
+        tried = tried[tried["median_error"] < median]
     return tried[(tried[column].abs() <= most) & (most > 0.0)][["factor", "level", column]]
 
 

@@ -78,7 +78,7 @@ SHOWN = ("engine", "shown_by", "setting", *NUMBERS)
 
 HELPS = (
     "A setting helps if it halves what there is, at the p dt of all and at the library's own step; "
-    "inf: cases fail."
+    "a peak, if the median error falls, too. It may make another symptom worse. inf: cases fail."
 )
 """How the tables are read."""
 

@@ -208,17 +208,17 @@ def test_an_engine_that_was_not_published_is_a_line_that_says_so():
 @pytest.mark.parametrize("engine", CORE)
 def test_settings_are_written_out_for_the_block_and_the_step(engine):
     declared = ENGINES[engine]
-    text = literal(declared, declared.preset("fixed"), BLOCK, 2e-4)
+    text = literal(declared, declared.preset("fixed"), BLOCK, 2e-4, 0.8)
     assert repr(2e-4 / BLOCK.p) in text
     assert "375.0" in text or "0.25" in text  # its mass [kg], or half its width [m]
-    landing = literal(declared, declared.best, BLOCK, 0.02)
+    landing = literal(declared, declared.best, BLOCK, 0.02, 0.8)
     assert "by no setting of the library: steps that land on impacts" in landing
 
 
 def test_settings_of_an_engine_without_words_are_this_project_s():
     moreau = ENGINES["moreau"]
-    text = literal(moreau, moreau.best, BLOCK, 0.02)
-    assert "in this project's names" in text and "friction=10.0" in text
+    text = literal(moreau, moreau.best, BLOCK, 0.02, 0.8)
+    assert "in this project's names" in text and "friction=0.8" in text
 
 
 def test_the_command_says_what_to_set_and_from_which_tables(capsys):
@@ -228,6 +228,20 @@ def test_the_command_says_what_to_set_and_from_which_tables(capsys):
     assert 'solref="-' in text
     assert "nothing does" in text and "rocking advise --engine" not in text
     assert all(name in " ".join(text.split()) for name in TABLES)
+
+
+@pytest.mark.parametrize("asked", [[], ["--friction", "0.8"], ["--friction", "10"]])
+def test_impratio_is_written_out_with_the_friction_that_it_belongs_to(asked, capsys):
+    """Its root is at most 10 times the friction: beyond, the solver errs."""
+    friction = float(asked[-1]) if asked else 0.8
+    assert run(["advise", "--dt", "0.002", "--engine", "mujoco", *asked]) == 0
+    text = capsys.readouterr().out
+    heads, ratios = (
+        re.findall(words, text) for words in (r"DT = \S+ s, (.*)", r'impratio="(.*?)"')
+    )
+    assert set(heads) == {f"friction {friction:g}"}
+    assert set(re.findall(r' friction="(\S+)', text)) == {f"{friction}"}
+    assert max(map(float, ratios)) == pytest.approx((10.0 * friction) ** 2)
 
 
 @pytest.mark.parametrize(
@@ -284,8 +298,7 @@ def test_a_dial_is_no_step(capsys):
     own = float(close["value"]) * BLOCK.alpha * max(1.0, BLOCK.R)
     assert f"integrator.set_target_accuracy({own!r})" in told
     assert re.search(r"AddContactMaterial\(.*point_stiffness=", told)
-    rough = float(drake.settings.friction)
-    assert f"CoulombFriction({rough!r}, {rough!r})" in told
+    assert "CoulombFriction(0.8, 0.8)" in told
 
 
 def test_a_block_of_no_published_shape_is_told_so(capsys):
