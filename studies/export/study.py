@@ -4,7 +4,7 @@ import inspect
 import math
 import sys
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -111,6 +111,10 @@ def command(
     else:
         shown = (" ".join(f"{slip:.12g}" for slip in slips) for slips in (found, exact))
         print("slips to expect: {} m; exact {} m".format(*shown))
+    if preset is None and engine == asked.name:
+        best = asked.used_for(replace(scene, preset=None)).name
+        others = "" if best == used.name else f"; in other commands {engine} is {engine}:{best}"
+        print(f"preset: {used.name}, in equal steps{others}")
     return 0
 
 

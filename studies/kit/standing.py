@@ -146,7 +146,9 @@ class Standing:
                 words = "a cart requires the block's mass over that of both"
                 (ratio,) = required(words, mass_ratio=self.mass_ratio)
                 return CartBlock(**sizes, mass_ratio=ratio, stiffness=self.stiffness or 0.0)
-            return block
+            if self.scene == "block":
+                return block
+        raise BadInputError(f"--scene is {self.scene!r}; it must be another one here")
 
     def refuse(self, allowed: str) -> None:
         """Raise BadInputError if an option was given a value, which is allowed otherwise."""

@@ -214,6 +214,17 @@ def test_an_engine_takes_its_preset_after_a_colon(tmp_path, capsys):
 
 
 FRAME = ["--scene", "frame", "--load", "2"]
+
+
+@pytest.mark.parametrize("scene", [[], FRAME])
+def test_an_engine_without_a_preset_says_which_one_is_written(scene, tmp_path, capsys):
+    """Elsewhere its name stands for steps that land, which no script can take."""
+    engine = ["--engine", "mujoco", "--step", "0.01", "--out", str(tmp_path / "scene")]
+    assert rocking([*CALL, *scene, *engine]) == 0
+    told = capsys.readouterr().out
+    assert "preset: fixed" in told and "mujoco:landing" in told
+
+
 SLIDE = ["--scene", "slide", "--friction", "0.2"]
 
 
