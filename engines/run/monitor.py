@@ -183,7 +183,8 @@ class Monitor:
         self.runs = Run.blank(max(rocking, 1))
         first = self.runs[0]
         begin_pace(first.pace, scene, dt_s, stepping, moment, resolution)
-        lands = stepping is Stepping.LANDING
+        # with a preset's own friction a slide is said, and is no failure up to SLIDE_WIDTHS
+        lands = stepping is Stepping.LANDING and scene.friction is not None
         for run, body in zip(self.runs, scene.bodies[:rocking], strict=False):
             begin_watch(run.watch, scene, body, dt_s, lands, moment, resolution)
         begin_spread(first.spread, scene.layout)

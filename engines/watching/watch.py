@@ -47,8 +47,8 @@ SLIDE_WIDTHS = 0.1
 
 HOLD_WIDTHS = 0.01
 """A pivot that slides further than this part of the width does not hold, as steps that land on
-impacts assume: their runs fail, and others say so. In runs that are right it slides by 1.1e-4 at
-most; by 5e-3 where the pivot would lift off."""
+impacts assume: with a friction that a scene asks for such a run fails, and all others say so. Where
+it holds it slides by 1.1e-4 at most in the paper's cases."""
 
 PROPPED_PART = 0.5
 """Part of alpha. A block that leans by less, and is neither held nor shaken, turns faster within
@@ -97,7 +97,8 @@ class Watch(State):
     motion_end, end : float
         End of the motion, and of the observation [s].
     slides, lands : bool
-        Whether the block is meant to slide, and whether the steps land on impacts.
+        Whether the block is meant to slide, and whether steps land on impacts of a pivot that has
+        to hold.
     keeps_rows : bool
         Whether a history is wanted.
     rows, events : int
@@ -212,7 +213,7 @@ def begin_watch(
     dt_s : float
         Ordinary step [s], which bounds what can be resolved.
     lands : bool
-        Whether the steps land on impacts.
+        Whether the steps land on impacts of a pivot that has to hold.
     moment : Moment
         At which moment of a step the engine's velocity holds.
     resolution : Resolution
