@@ -21,7 +21,6 @@ from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import peak_ratios, simulate
 from analytic.slide import SlidingBlock
 from analytic.steppers import integrate
-from analytic.synthetic import kanai_tajimi, near_fault, ricker
 
 __all__ = [
     "GRAVITY",
@@ -52,11 +51,8 @@ __all__ = [
     "frame_restitution",
     "housner_restitution",
     "integrate",
-    "kanai_tajimi",
-    "near_fault",
     "overturning_modes",
     "peak_ratios",
-    "ricker",
     "rocking_friction",
     "sensitivities",
     "sensitivity",

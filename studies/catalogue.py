@@ -8,7 +8,6 @@ from studies import (
     contact,
     defaults,
     doctor,
-    ensemble,
     estimate,
     export,
     free,
@@ -33,7 +32,7 @@ STUDIES: tuple[Study, ...] = (
     *(defaults.STUDY, histories.STUDY, linearizations.STUDY, free.STUDY, scenes.STUDY),
     *(literature.STUDY, validate.STUDY, advise.STEPS, estimate.STUDY),
     *(precision.STUDY, precision.COST, contact.STUDY, symptoms.STUDY, restitution.STUDY),
-    *(stability.STUDY, overturning.STUDY, validity.STUDY, ensemble.STUDY),
+    *(stability.STUDY, overturning.STUDY, validity.STUDY),
     *(score.STUDY, doctor.STUDY),
 )
 """In the order in which the help lists them and a report shows them."""

@@ -3,7 +3,9 @@
 import math
 from dataclasses import asdict
 
-from analytic import RigidBlock, SinePulse
+import numpy as np
+
+from analytic import Record, RigidBlock, SinePulse
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 G = BLOCK.gravity
@@ -28,6 +30,14 @@ def pulse(onsets, omega_over_p, half_cycles=1, block=BLOCK, phase=0.0):
         half_cycles=half_cycles,
         phase=phase,
     )
+
+
+def noise(seed, count, dt, peak, width=0.12):
+    """Return a smooth random record whose samples are correlated over `width` [s]."""
+    draw = np.random.default_rng(seed).normal(size=count)
+    kernel = np.exp(-0.5 * (np.arange(-3 * width, 3 * width, dt) / width) ** 2)
+    shaken = np.convolve(draw, kernel, mode="same") * np.sin(np.linspace(0, math.pi, count))
+    return Record(dt=dt, samples=shaken).scaled_to(peak)
 
 
 def all_but_times(response):

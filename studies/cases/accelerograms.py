@@ -56,10 +56,7 @@ def read_record(
 
 
 def recorded(
-    paths: Sequence[Path],
-    units: str | None,
-    baseline: Baseline | None = None,
-    argument: str = "--records",
+    paths: Sequence[Path], units: str | None, baseline: Baseline | None, argument: str
 ) -> list[Record]:
     """Read records that move, in the order of their paths.
 

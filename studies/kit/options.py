@@ -146,7 +146,6 @@ class Computing:
         *,
         yes: bool,
         effort: Effort = DEFAULT_EFFORT,
-        case_bytes: float = 0.0,
     ) -> None:
         """Refuse more cases than fit into memory, or, without a yes, into a day.
 
@@ -160,14 +159,12 @@ class Computing:
         yes : bool
             Whether it is begun even if it takes longer than a day.
         effort : Effort, optional
-        case_bytes : float, optional
-            What a case holds besides its rows.
 
         Raises
         ------
         BadInputError
         """
-        refuse_excess(asked, cases * (case_bytes + len(sources) * CASE_BYTES))
+        refuse_excess(asked, cases * len(sources) * CASE_BYTES)
         seconds = 0.0
         for name in sources:
             kind = resolve(name).kind

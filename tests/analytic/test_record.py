@@ -7,7 +7,7 @@ import pickle
 import numpy as np
 import pytest
 from declared import equal_to, held_to
-from given import BLOCK, ONSET, onset_of
+from given import BLOCK, ONSET, noise, onset_of
 from independent import history_under_samples
 
 from analytic import MODELS, Outcome, Record, RigidBlock, SinePulse, integrate, simulate
@@ -19,14 +19,6 @@ from studies.kit.jobs import Job
 from studies.sources.registry import SOURCES
 
 WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])
-
-
-def noise(seed, count, dt, peak, width=0.12):
-    """Return a smooth random record whose samples are correlated over `width` [s]."""
-    draw = np.random.default_rng(seed).normal(size=count)
-    kernel = np.exp(-0.5 * (np.arange(-3 * width, 3 * width, dt) / width) ** 2)
-    shaken = np.convolve(draw, kernel, mode="same") * np.sin(np.linspace(0, math.pi, count))
-    return Record(dt=dt, samples=shaken).scaled_to(peak)
 
 
 def test_acceleration_is_numpys_interpolation():

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from commanding import python
-from given import BLOCK, all_but_times
+from given import BLOCK, all_but_times, noise
 from uses import HERE, rocked, scene
 
 from analytic import SinePulse
@@ -21,7 +21,6 @@ from engines.parts.compiled import PACKAGE
 from engines.pybullet import build as bullet
 from engines.run.drive import LOOK_AROUND, build
 from engines.run.monitor import roomy
-from studies.ensemble.study import noise
 
 TIMES = [0.02 * i for i in range(80)]
 LOOSE = {"accuracy": "loose"}
@@ -34,7 +33,7 @@ OF_ALL = {
     "moving base": {"frame": "world", **LOOSE},
     "box": {"settings": {"geometry": "box"}, **LOOSE},
     "free body": {"settings": {"planar": False}, **LOOSE},
-    "record": {"motion": noise(1).scaled_to(6.0), **LOOSE},
+    "record": {"motion": noise(1, 1200, 0.01, 6.0), **LOOSE},
     "given up": {"max_steps": 300},
     "slides": {"friction": 0.05},
     "lost": {"motion": SinePulse(amplitude=1e30, omega=1.0), "preset": "fixed"},

@@ -27,7 +27,6 @@ ARGUMENTS = {
     "stability": ("--quick", "--sources", "exact", "moreau", "moreau:fixed", "moreau:naive"),
     "overturning": ("--quick", "--sources", "exact", "moreau"),
     "validity": ("--quick", "--sources", "moreau:fixed"),
-    "ensemble": ("--quick", "--sources", "moreau"),
     "score": ("moreau", "--quick"),
 }
 OF_NO_ENGINE = {"linearizations", "blocks"}

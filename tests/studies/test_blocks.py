@@ -12,9 +12,10 @@ import numpy as np
 import pandas as pd
 import pytest
 from commanding import compared, refused
+from given import noise
 from records import write_record
 
-from analytic import Outcome, Record, RigidBlock, SlidingBlock, kanai_tajimi, simulate
+from analytic import Outcome, Record, RigidBlock, SlidingBlock, simulate
 from analytic.criteria import overturning_velocity
 from studies.__main__ import run
 from studies.blocks.cabinets import read_cabinets
@@ -28,7 +29,7 @@ HEAD = "name,width,height,friction,tilt\n"
 LIST = HEAD + "A,0.5,1.5,,\nB,0.45,1.9,0.2,\nC,0.6,1.7,,0.3\n"
 SLIDING = HEAD + "A,0.5,1.5,,\nB,0.45,1.9,0.2,\nC,0.45,1.9,0.24,\nD,0.45,1.9,0.7,\n"
 """Of B/H 0.237: B slides flat, C rocks only with more friction than it has, D rocks."""
-SHAKEN = kanai_tajimi(3, peak=3.0, duration=6.0, omega=10.0, rise=1.0, fall=3.0)
+SHAKEN = noise(243, 600, 0.01, 2.0)
 
 
 @pytest.fixture

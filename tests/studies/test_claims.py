@@ -12,7 +12,6 @@ from studies.cases.drawn import LEAST_NORMAL, everything
 from studies.cases.window import Window
 from studies.contact import study as contact
 from studies.contact.study import recommendation
-from studies.ensemble import study as ensemble
 from studies.histories.study import CLAIMS
 from studies.measures.claims import Finding, claim, read_findings, tally, write_findings
 from studies.overturning import report as overturning
@@ -78,36 +77,6 @@ def test_a_lucky_setting_is_not_the_cheapest():
     assert cheapest_below(pd.DataFrame(lines), 5e-3)["value"] == 2e-3
     assert cheapest_below(pd.DataFrame(lines), 1.5e-3)["value"] == 1e-3
     assert cheapest_below(pd.DataFrame(lines), 5e-4) is None
-
-
-def agreed(source, predicted, low, high, ks=0, mcnemar=0.5):
-    return {
-        "width_m": 1.0,
-        "height_m": 4.0,
-        "source": source,
-        "cases": 240,
-        "predicted": predicted,
-        "capacity_ratio": 0.5 * (low + high),
-        "ratio_low": low,
-        "ratio_high": high,
-        "ratio_at_edge": False,
-        "ks_tests": 6,
-        "ks_rejected": ks,
-        "mcnemar_p": mcnemar,
-    }
-
-
-def test_what_any_test_rejects_is_told_from_the_exact():
-    lines = [
-        *(agreed("far", 0.6, 1.04, 1.16), agreed("uneven", 0.6, 0.95, 1.05, mcnemar=0.004)),
-        *(agreed("skewed", 0.6, 0.95, 1.05, ks=2), agreed("close", 0.99, 0.99, 1.01)),
-    ]
-    found = ensemble.told(pd.DataFrame(lines)).set_index("source")
-    tests = found[["capacity_off", "mcnemar_rejected", "ks_rejected"]]
-    assert tests.to_numpy().tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 2], [0, 0, 0]]
-    assert found["predicted"].to_list() == pytest.approx([0.6, 0.6, 0.6, 0.99])
-    words = "from the exact statistics those of far, uneven and skewed; not those of close."
-    assert words in ensemble.finding(pd.DataFrame(lines))
 
 
 def variant(preset, factor, level, moved, largest, *, wrong=0, turned=0.0, trap=""):

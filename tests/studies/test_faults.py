@@ -23,7 +23,7 @@ ASKING = [
         pytest.param(name, marks=pytest.mark.slow)
         for name in (
             *("contact", "validity", "stability", "sweep"),
-            *("ensemble", "overturning"),
+            *("overturning",),
         )
     ),
 ]

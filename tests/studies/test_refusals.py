@@ -54,7 +54,6 @@ sweep --figure 6.5 --out DIR | --figure is '6.5' | 6, 7, 8, 9
 sweep --figure 6 6 --out DIR | --figure names 6 twice | once
 sweep --time-limit 0 --out DIR | --time-limit is '0' | positive
 histories --figure 3 --out DIR | --figure is '3' | 2, 4, 5
-ensemble --out DIR --family none | --family is 'none' | ricker
 sweep --time-limit 1e150 --out DIR | --time-limit is '1e150' | up to 1e9
 precision --out DIR --time-limit nan | --time-limit is 'nan' | positive
 free --out DIR --jobs 1.5 | --jobs is '1.5' | whole
@@ -126,7 +125,6 @@ blocks list.csv --record list.csv --out DIR | --record is 'list.csv'
 blocks list.csv --record X.AT2 --units m/s2 --out DIR | it states g; --units must not be m/s2
 blocks list.csv --record still.csv --units g --out DIR | it is zero throughout, and must not be
 blocks list.csv --out DIR | --record requires an argument
-ensemble --out DIR --records f f | --records names 'f' twice | once
 
 # a reader's own friction and step
 compare CASE --dt 0.002 | --dt is 0.002; | pybullet takes steps that land on impacts: ask pybullet:n

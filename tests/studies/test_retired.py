@@ -4,6 +4,6 @@ import pytest
 from commanding import refused
 
 
-@pytest.mark.parametrize("name", ["harmonic", "throughput", "versions"])
+@pytest.mark.parametrize("name", ["ensemble", "harmonic", "throughput", "versions"])
 def test_a_retired_command_is_refused_in_one_line(name, capsys):
     refused(capsys, [name, "--out", "results"], name, "retired in 0.3", "changelog")

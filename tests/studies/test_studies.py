@@ -138,7 +138,6 @@ def test_a_history_that_failed_leaves_the_others(tmp_path, capsys, monkeypatch):
 
 
 MADE = [
-    "ensemble --quick --motions 3 --sources modified",
     "estimate --seed 3 --cases 4 --tests 2 --sources mujoco:naive",
     "linearizations",
     "overturning --quick --columns 20 --rows 40 --sources exact housner",
