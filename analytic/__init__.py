@@ -9,7 +9,6 @@ from analytic.block import GRAVITY, RigidBlock, Rocker, housner_restitution
 from analytic.cart import CartBlock
 from analytic.cart_forces import cart_demands
 from analytic.conditioning import condition_numbers, conditioning, sensitivities, sensitivity
-from analytic.cylinder import RollingCylinder
 from analytic.first_mode import FirstMode, first_mode, rocking_friction
 from analytic.frame import RockingFrame, frame_restitution
 from analytic.frame_forces import frame_demands, frame_faults
@@ -38,7 +37,6 @@ __all__ = [
     "RigidBlock",
     "Rocker",
     "RockingFrame",
-    "RollingCylinder",
     "SinePulse",
     "SlidingBlock",
     "Still",

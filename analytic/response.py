@@ -35,19 +35,6 @@ _SENTENCES = {
 }
 
 
-class RollingOutcome(enum.Enum):
-    """How a cylinder ends that rolls on its rim; or `Outcome.FAILED`."""
-
-    ROLLED = "rolled"
-    LAY_DOWN = "lay down"
-    FELL_OVER = "fell over"
-
-    @property
-    def sentence(self) -> str:
-        """The sentence a reader sees."""
-        return f"the cylinder {self.value}{' on its rim' if self is self.ROLLED else ''}"
-
-
 class Reason(enum.Enum):
     """Why there is no usable result; the value is the sentence that a reader sees."""
 
@@ -105,11 +92,9 @@ class Response:
 
     Attributes
     ----------
-    outcome : Outcome or RollingOutcome
-        At rest, rocked, overturned, slid or failed; the latter of a cylinder.
+    outcome : Outcome
     peak_ratio : float
-        Largest abs(theta)/alpha; inf when overturned, 0 at rest or slid, nan when failed. Of a
-        cylinder, its largest tilt over that of the steady motion.
+        Largest abs(theta)/alpha; inf when overturned, 0 at rest or slid, nan when failed.
     crossed : bool
         Whether abs(theta) exceeded alpha at some time; such a block may still survive.
     impacts : tuple of Impact
@@ -148,7 +133,7 @@ class Response:
         Name -> value of what else its scene shows: of a frame how far its bodies came apart, ...
     """
 
-    outcome: Outcome | RollingOutcome
+    outcome: Outcome
     peak_ratio: float
     crossed: bool = False
     impacts: tuple[Impact, ...] = ()

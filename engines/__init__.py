@@ -34,8 +34,8 @@ It holds
   (`engines.declaration.BatchEngine`): what each scene's own run gives, and where it has no other,
   its ``build`` too;
 - where it can hold what ``build`` does not, as a base that feels what stands on it
-  (`engines.cart`) or a cylinder in space (`engines.space`), what builds that, a line each in
-  ``builders``, on which no row of another scene depends;
+  (`engines.cart`), what builds that, a line in ``builders``, on which no row of another scene
+  depends;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
   as its own documentation shows it, each setting with its source) to the best there is, what the
   studies try of its contact, and what its users should know first (`rules`), each with the variant

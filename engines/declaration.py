@@ -20,9 +20,6 @@ from engines.world import REST_FACTOR, ROUNDINGS, Resolution, World, Worlds
 Builder = Callable[[Any, Any, float], Any]
 """``(scene, settings, dt_s)`` -> the built scene, in the ordinary steps dt_s [s]."""
 
-IN_EQUAL_STEPS = (Ability.FREE_BASE, Ability.CYLINDER)
-"""What is simulated in equal steps alone."""
-
 
 class Stepping(enum.Enum):
     """Who chooses the steps of a preset."""
@@ -217,8 +214,8 @@ class Engine:
         What `build` can hold beyond one body.
     builders : mapping
         What else its adapter can hold -> what builds it, called as `build`: a `World`, of a base
-        that feels what stands on it a `engines.cart.CartWorld`, of a cylinder in space a
-        `engines.space.SpaceWorld`. No row of another scene depends on it.
+        that feels what stands on it a `engines.cart.CartWorld`. No row of another scene depends on
+        it.
     spatial : bool
         Whether the block can leave the plane (setting "planar" put to False).
     precision : Precision
@@ -336,8 +333,6 @@ class Engine:
         """Say what of a scene a preset of the engine cannot do, or return an empty string."""
         wanted, asks = scene.settings.get("geometry"), scene.layout.asks
         for asked in asks:
-            if asked not in self.holds and asked is Ability.CYLINDER and not self.spatial:
-                return f"a cylinder needs space, and {self.title} knows the plane alone"
             if asked not in self.holds:
                 return f"{self.title} is not built here for {asked.value}"
         frame = preset.posed(scene).frame
@@ -348,7 +343,7 @@ class Engine:
         unequal = preset.stepping is not Stepping.FIXED
         for asked in asks:
             stacked = asked is Ability.STACKED and preset.stacked is None
-            if stacked or (unequal and asked in IN_EQUAL_STEPS):
+            if stacked or (unequal and asked is Ability.FREE_BASE):
                 return f"{self.name}:{preset.name} is not built here for {asked.value}"
         if frame not in self.frames:
             return f"{self.title} has no frame {frame!r}"

@@ -38,7 +38,6 @@ class Ability(Enum):
     SEVERAL = "several bodies on one base"
     STACKED = "bodies that rest on other bodies"
     FREE_BASE = "a base that feels what stands on it"
-    CYLINDER = "a cylinder in space"
 
 
 class Beginning(NamedTuple):

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from analytic.cylinder import RollingCylinder
     from analytic.motion import FloatArray, Motion
     from analytic.response import Response
     from engines.layouts import System
@@ -24,7 +23,7 @@ __all__ = ["plot", "respond", "side_by_side", "table"]
 
 def respond(
     source: str,
-    block: System | RollingCylinder,
+    block: System,
     motion: Motion | None = None,
     *,
     start: tuple[float, float] = (0.0, 0.0),
@@ -39,15 +38,15 @@ def respond(
     source : str
         A name of `studies.sources.registry.SOURCES`; an engine takes a preset after a colon, as in
         ``"mujoco:fixed"``.
-    block : RigidBlock, RockingFrame, SlidingBlock, CartBlock or RollingCylinder
-        What stands on the base, or rolls on it; the latter sets out as it rolls steadily.
+    block : RigidBlock, RockingFrame, SlidingBlock or CartBlock
+        What stands on the base.
     motion : Motion, optional
         For instance a `SinePulse`; by default the ground does not move.
     start : (float, float), optional
         Rotation theta [rad] and angular velocity [rad/s] at time zero; at rest by default.
     duration : float, optional
         Observe until this time [s], not before the motion ends. By default the response is
-        followed until its peak is decided, and no longer; a cylinder for five turns.
+        followed until its peak is decided, and no longer.
     times : array, optional
         Ground times [s] at which `Response.history` is sampled. Without a duration, "exact" and the
         other models go on to the last of them, and who steps as far as is needed to decide.
@@ -73,7 +72,7 @@ def respond(
     motion = Still() if motion is None else motion
     if tuple(start) != (0.0, 0.0):
         options["start"] = start
-    asked = resolve(source).about(block)
+    asked = resolve(source)
     asked.check(block, motion, duration=duration, times=times, **options)
     return asked.call(block, motion, duration=duration, times=times, **options)
 

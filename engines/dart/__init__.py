@@ -5,7 +5,6 @@ from functools import partial
 from engines.cart import CartWorld
 from engines.dart.build import DartWorld, script
 from engines.dart.cart import DartCart
-from engines.dart.cylinder import DartCylinder
 from engines.dart.settings import (
     DOCUMENTED,
     FACTORS,
@@ -37,10 +36,7 @@ ENGINE = Engine(
     install="rocking[dart]",
     build=DartWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={
-        Ability.FREE_BASE: partial(CartWorld, DartCart),
-        Ability.CYLINDER: DartCylinder,
-    },
+    builders={Ability.FREE_BASE: partial(CartWorld, DartCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(),

@@ -7,7 +7,6 @@ from engines.declaration import Engine, Preset, Stepping
 from engines.disclosure import Deviation
 from engines.drake.build import DrakeWorld
 from engines.drake.cart import DrakeCart
-from engines.drake.cylinder import DrakeCylinder
 from engines.drake.script import script
 from engines.drake.settings import (
     CONTROLLED,
@@ -37,10 +36,7 @@ ENGINE = Engine(
     install="rocking[drake]",
     build=DrakeWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={
-        Ability.FREE_BASE: partial(CartWorld, DrakeCart),
-        Ability.CYLINDER: DrakeCylinder,
-    },
+    builders={Ability.FREE_BASE: partial(CartWorld, DrakeCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(Deviation.PEAK),

@@ -8,7 +8,6 @@ from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
 from engines.mujoco.cart import MujocoCart
-from engines.mujoco.cylinder import MujocoCylinder
 from engines.mujoco.script import script
 from engines.mujoco.settings import (
     DEFAULT_CONTACT_S,
@@ -42,10 +41,7 @@ ENGINE = Engine(
     install="rocking",
     build=world_of,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={
-        Ability.FREE_BASE: partial(CartWorld, MujocoCart),
-        Ability.CYLINDER: MujocoCylinder,
-    },
+    builders={Ability.FREE_BASE: partial(CartWorld, MujocoCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(),

@@ -3,7 +3,6 @@
 from engines.declaration import Engine, Precision, Preset
 from engines.layouts import Ability
 from engines.newton.build import NewtonWorld, script
-from engines.newton.cylinder import NewtonCylinder
 from engines.newton.settings import DOCUMENTED, FACTORS, RECOMMENDED, RULES, TUNED, NewtonSettings
 from engines.newton.stacks import NewtonStacks
 
@@ -22,11 +21,7 @@ ENGINE = Engine(
     packages=("newton", "warp-lang"),
     install="rocking[newton]",
     build=NewtonWorld,
-    builders={
-        Ability.SEVERAL: NewtonStacks,
-        Ability.STACKED: NewtonStacks,
-        Ability.CYLINDER: NewtonCylinder,
-    },
+    builders={Ability.SEVERAL: NewtonStacks, Ability.STACKED: NewtonStacks},
     presets=(
         NAIVE,
         NAIVE.at_rest(),

@@ -8,7 +8,6 @@ from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.physx.build import PhysxWorld, script
 from engines.physx.cart import PhysxCart
-from engines.physx.cylinder import PhysxCylinder
 from engines.physx.settings import (
     DOCUMENTED,
     FACTORS,
@@ -37,10 +36,7 @@ ENGINE = Engine(
     install="rocking[physx]",
     build=PhysxWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={
-        Ability.FREE_BASE: partial(CartWorld, PhysxCart),
-        Ability.CYLINDER: PhysxCylinder,
-    },
+    builders={Ability.FREE_BASE: partial(CartWorld, PhysxCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(Deviation.MIRROR),

@@ -8,7 +8,6 @@ from engines.disclosure import Help
 from engines.layouts import Ability
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.cart import BulletCart
-from engines.pybullet.cylinder import BulletCylinder
 from engines.pybullet.script import script
 from engines.pybullet.settings import (
     DOCUMENTED,
@@ -41,10 +40,7 @@ ENGINE = Engine(
     install="rocking[pybullet]",
     build=BulletWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={
-        Ability.FREE_BASE: partial(CartWorld, BulletCart),
-        Ability.CYLINDER: BulletCylinder,
-    },
+    builders={Ability.FREE_BASE: partial(CartWorld, BulletCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(),

@@ -8,7 +8,6 @@ from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.rapier.build import RapierWorld, script
 from engines.rapier.cart import RapierCart
-from engines.rapier.cylinder import RapierCylinder
 from engines.rapier.settings import (
     DOCUMENTED,
     FACTORS,
@@ -37,10 +36,7 @@ ENGINE = Engine(
     install="rocking[rapier]",
     build=RapierWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={
-        Ability.FREE_BASE: partial(CartWorld, RapierCart),
-        Ability.CYLINDER: RapierCylinder,
-    },
+    builders={Ability.FREE_BASE: partial(CartWorld, RapierCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(Deviation.MIRROR, Deviation.RECORD, Deviation.SLEEP),

@@ -21,7 +21,6 @@ from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
 from studies.compare.records import as_lines, records
 from studies.compare.rendering import draw, table_text
-from studies.compare.rolling import compare_rolling
 from studies.kit.arguments import (
     BadInputError,
     Place,
@@ -64,10 +63,7 @@ TIMED_IMPACTS = 5
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", *core_sources())
 OF_A_SLIDE = ("exact", *core_sources())
-"""By default asked of a block that slides or stands on a cart, and of a cylinder, which have no
-linearization."""
-
-NOT_ROLLING = "only where no cylinder rolls"
+"""By default asked of a block that slides or stands on a cart, which have no linearization."""
 
 
 def command(
@@ -85,13 +81,13 @@ def command(
     json: bool = False,
     computing: Computing = DEFAULT_COMPUTING,
 ) -> int:
-    """Compare the sources on one block, frame, slide or cylinder, and one pulse, record or release.
+    """Compare the sources on one block, frame or slide, and one pulse, record or release.
 
     Parameters
     ----------
     duration
         Observe until this time [s], at least the length of the motion; by default the motion and
-        8/p of free rocking. A cylinder by default five turns, and fifty.
+        8/p of free rocking.
     estimate
         Run every engine at half the step, too: the relative difference of the two peaks, and that
         times the factor which bounds 95 % of the errors on random cases, or that there is no such
@@ -101,20 +97,9 @@ def command(
     json
         Print one JSON object for each source, one a line, instead of the table.
     """
-    if standing.scene in ("slide", "cart", "cylinder") and sources == DEFAULT_SOURCES:
+    if standing.scene in ("slide", "cart") and sources == DEFAULT_SOURCES:
         sources = OF_A_SLIDE
     refuse_both(dt=yours.dt, step=effort.step)
-    if standing.scene == "cylinder":
-        refuse_given({"width": width, "plot": plot, "estimate": estimate or None}, NOT_ROLLING)
-        return compare_rolling(
-            standing.cylinder(height, excitation),
-            sources,
-            duration=duration,
-            effort=effort,
-            yours=yours,
-            executor=computing.executor(at_once=True),
-            json=json,
-        )
     words = "a block requires its full width and height [m]"
     width, height = required(words, width=width, height=height)
     if not standing.rocks:

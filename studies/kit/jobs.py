@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from analytic.cylinder import RollingCylinder
 from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.response import Response
 from studies.cases.refusal import BadInputError
@@ -25,9 +24,6 @@ STEP_S = {"peer": 1e-6}
 
 COMPILED_STEP_S = 1e-7
 """About how long a compiled source takes over a step [s]."""
-
-SHORT = 1e-2
-"""Turns of a cylinder that take no time."""
 
 NOBODY = Source("model", Response.failure)
 """Who is asked before a name is resolved."""
@@ -76,7 +72,7 @@ class Job:
     def __post_init__(self) -> None:
         # what was resolved travels with a job that is made of another, where no registry is
         if self.asked.name != self.source:
-            object.__setattr__(self, "asked", resolve(self.source).about(self.block))
+            object.__setattr__(self, "asked", resolve(self.source))
         times, duration = self.times, self.duration
         try:
             self.asked.check(
@@ -123,8 +119,6 @@ def plain(value: Any) -> Any:
 def short(job: Job) -> Job:
     """Return a question that takes no time and runs through the same compiled kernels."""
     block = job.block
-    if isinstance(block, RollingCylinder):  # nothing of ours is compiled for it
-        return replace(job, duration=SHORT * block.turn)
     pulse = SinePulse(amplitude=2.0 * block.gravity * math.tan(block.alpha), omega=4.0 * block.p)
     return replace(
         job,

@@ -9,7 +9,6 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from analytic.cylinder import RollingCylinder
 from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines.declaration import Stepping
@@ -255,15 +254,13 @@ class Yours:
     friction: NotNegative | None = None
     dt: Positive | None = None
 
-    def options(
-        self, sources: Sequence[str], block: System | RollingCylinder
-    ) -> dict[str, dict[str, float]]:
+    def options(self, sources: Sequence[str], block: System) -> dict[str, dict[str, float]]:
         """Return the options that this means for each source.
 
         Parameters
         ----------
         sources : sequence of str
-        block : System or RollingCylinder
+        block : System
             Of which p [rad/s] is used.
 
         Returns

@@ -1,8 +1,7 @@
 """From the options of a command line to what stands on the base."""
 
-import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import chain
 from typing import Annotated, Literal
 
@@ -10,7 +9,6 @@ from cyclopts import Parameter
 
 from analytic.block import RigidBlock
 from analytic.cart import CartBlock
-from analytic.cylinder import RollingCylinder
 from analytic.frame import RockingFrame
 from analytic.slide import SlidingBlock
 from engines.layouts import System
@@ -35,14 +33,13 @@ LEAST_COLUMNS = 2
 OF_A_SCENE = {
     "frame": ("columns", "load"),
     "cart": ("mass_ratio", "stiffness"),
-    "cylinder": ("radius",),
 }
 """Scene -> the options that are its own."""
 
 Width = Annotated[Positive, Parameter(help="Full width B of the block or of each column [m].")]
-Height = Annotated[Positive, Parameter(help="Full height H of these, or of a cylinder [m].")]
+Height = Annotated[Positive, Parameter(help="Full height H of the block or of each column [m].")]
 
-SceneName = Literal["block", "frame", "slide", "cart", "cylinder"]
+SceneName = Literal["block", "frame", "slide", "cart"]
 
 
 def posed_block(width: float, height: float) -> RigidBlock:
@@ -77,7 +74,6 @@ class Standing:
         block: one block that rocks. frame: a beam on columns that rock, of --width and --height
         each, with --load. slide: one block that slides, by a --friction below B/H. cart: one block
         on a cart of --mass-ratio that feels it, pushed by the force (m + M) times the acceleration.
-        cylinder: one that rolls on its rim, of --radius, --height and --tilt, the latter in rad.
     columns
         Of a frame, from 2 to 100.
     load
@@ -86,8 +82,6 @@ class Standing:
         Of a cart: the block's mass over that of block and cart, between 0 and 1.
     stiffness
         Of a cart: that of its spring over the mass of both [1/s²]; 0 by default, a free cart.
-    radius
-        Of a cylinder [m].
     """
 
     scene: Annotated[SceneName, one_of(SceneName)] = "block"
@@ -95,25 +89,6 @@ class Standing:
     load: Positive | None = None
     mass_ratio: Positive | None = None
     stiffness: NotNegative | None = None
-    radius: Positive | None = None
-
-    def cylinder(self, height: float | None, excitation: Excitation) -> RollingCylinder:
-        """Return the cylinder of this height [m], at the tilt of an excitation without a motion.
-
-        Raises
-        ------
-        BadInputError
-            If an option is missing, or is one of another scene, or has a value that is not allowed.
-        """
-        self._refuse_others()
-        replace(excitation, tilt=None, degrees=False).refuse("only where no cylinder rolls")
-        words = "a cylinder that rolls requires its radius, height and tilt"
-        radius, height, tilt = required(
-            words, radius=self.radius, height=height, tilt=excitation.tilt
-        )
-        tilt = math.radians(tilt) if excitation.degrees else tilt
-        with as_bad_input():
-            return RollingCylinder(radius=radius, height=height, tilt=tilt)
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system that the options mean.

@@ -13,7 +13,6 @@ import pandas as pd
 
 from analytic.block import GRAVITY, RigidBlock
 from analytic.cart import CartBlock
-from analytic.cylinder import RollingCylinder
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.slide import SlidingBlock
@@ -179,7 +178,6 @@ SCENES: Mapping[str, tuple[Any, tuple[str, ...]]] = {
     "frame": (RockingFrame, ("columns", "load", "width", "height")),
     "slide": (SlidingBlock, ("friction", "width", "height")),
     "cart": (CartBlock, ("mass-ratio", "width", "height")),
-    "cylinder": (RollingCylinder, ("radius", "height", "tilt")),
     "": (RigidBlock, ("width", "height")),
 }
 """What `--scene` poses, by default one block, and its options."""

@@ -1,20 +1,19 @@
-"""Scenes beyond one block: a frame, a slide, a moving floor, a cart, a rolling cylinder."""
+"""Scenes beyond one block: a frame, a slide, a moving floor, a cart."""
 
 from studies.kit.study import Chapter, Study
 
-KINDS = ("frame", "slide", "floor", "block", "cart", "cylinder")
+KINDS = ("frame", "slide", "floor", "block", "cart")
 
 STUDY = Study(
     name="scenes",
-    help="""A frame, a slide, a moving floor, a cart, a rolling cylinder; their exact solutions.
+    help="""A frame, a slide, a moving floor, a cart; their exact solutions.
 
 The frame is a beam on two or three free columns, which turn as a block of another size and
 restitution does, and once on five, or much lighter or heavier than they are; the slide is friction
 alone: two slips under a pulse, a launch, and a hold below the onset; the floor is moved in each way
 that an engine has, and should carry a block along; a block that rocks on it is held against the
 exact answer on the floor as it should move, and as it moved; the cart, free or on a spring, is
-pushed and feels its block; a cylinder rolls on its rim in space, five turns and fifty. What an
-engine is not built for is a row that says so. Resumable.""",
+pushed and feels its block. What an engine is not built for is a row that says so. Resumable.""",
     table="frame-summary.csv",
     tables=(
         *(f"{kind}.csv" for kind in KINDS),
@@ -24,7 +23,7 @@ engine is not built for is a row that says so. Resumable.""",
         "cart-steps.csv",
     ),
     chapter=Chapter(
-        question="Does it hold for frames, friction alone, floors, carts, a rolling cylinder?",
+        question="Does it hold for frames, friction alone, floors, carts?",
         tables=(
             *(f"{kind}-summary.csv" for kind in KINDS),
             *("frame-extremes.csv", "frame-steps.csv", "cart-steps.csv"),
@@ -45,10 +44,6 @@ engine is not built for is a row that says so. Resumable.""",
             "A block on a cart that leans to the right about its right corner; dashed, where it is "
             "at rest. The cart rolls freely, or on a spring."
         ),
-        "cylinder-scene": (
-            "A cylinder that rolls on its rim about its own centre, which stays where it is; the "
-            "dot is its foot, and dashed is the circle on which that goes round."
-        ),
         **{
             f"{scene}-time": (
                 f"{scenes}: for each engine and preset a line from the median to the largest error "
@@ -58,7 +53,6 @@ engine is not built for is a row that says so. Resumable.""",
                 ("frame", "Frames", "the peak"),
                 ("slide", "Slides", "a slip"),
                 ("cart", "Carts", "the peak"),
-                ("cylinder", "Rolling cylinders", "the tilt after five turns"),
             )
         },
         "floor": (

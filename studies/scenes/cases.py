@@ -1,4 +1,4 @@
-"""The frames, the slides, the floors and the cylinders that every engine is asked about."""
+"""The frames, the slides, the floors and the carts that every engine is asked about."""
 
 import itertools
 import math
@@ -18,7 +18,6 @@ from studies.kit.jobs import Job
 from studies.scenes.carts import carts
 from studies.scenes.frames import frames
 from studies.scenes.places import PULSES
-from studies.scenes.rolling import cylinders
 from studies.sources.registry import resolve
 
 FRICTIONS = (0.1, 0.2, 0.3)
@@ -53,8 +52,7 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
         If a source is neither exact nor an engine: other sources know neither slides nor carts.
     """
     beyond = [*slides(sources, quick), *floors(sources), *blocks(sources, quick)]
-    rolling = [*cylinders(sources, quick), *carts(sources, quick)]
-    return [*frames(sources, quick), *beyond, *rolling]
+    return [*frames(sources, quick), *beyond, *carts(sources, quick)]
 
 
 def slides(sources: Sequence[str], quick: bool) -> Iterator[Job]:

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
-from scipy.spatial import ConvexHull
 
-from analytic import RollingCylinder
-from analytic.motion import FloatArray
-from studies.drawing.block import BLOCK, INK, SOFT, draw_scene
+from studies.drawing.block import draw_scene
 from studies.drawing.facets import key, preset_dots
 from studies.drawing.kept import Pictures
 from studies.drawing.labels import Name, around
@@ -25,9 +19,6 @@ from studies.scenes.told import SCENES, by_scene, found_in, ranked
 
 LOWEST = 1e-7
 """Smaller errors are drawn here."""
-
-ABOVE = math.radians(18.0)
-"""From which angle over the plane a cylinder is seen."""
 
 
 FLOORS = (
@@ -93,40 +84,9 @@ def draw_times(lines: pd.DataFrame, title: str, along: str) -> Figure:
     return figure
 
 
-def draw_rolling(cylinder: RollingCylinder) -> Figure:
-    """Draw a cylinder on its rim in space, and, dashed, the circle on which its foot goes round."""
-    state, around = cylinder.at(0.0), np.linspace(0.0, 2.0 * math.pi, 121)
-    ring = np.stack((np.cos(around), np.sin(around), np.zeros(around.size)))
-    rim = (cylinder.radius * state.turned[0] @ ring).T
-    centre = np.array([0.0, 0.0, cylinder.centre_height])
-    lower, upper = (centre + end * cylinder.height * state.axis[0] + rim for end in (-0.5, 0.5))
-    drawing = Figure(figsize=(4.4, 3.4), layout="constrained")
-    axes = drawing.subplots()
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    whole = _seen(np.concatenate((lower, upper)))
-    for outline in (whole[ConvexHull(whole).vertices], _seen(upper)):
-        axes.add_patch(Polygon(outline, facecolor=BLOCK, edgecolor=INK, linewidth=1.8))
-    foot = state.foot[0]
-    axes.plot(*_seen(np.hypot(*foot[:2]) * ring.T).T, color=SOFT, dashes=(4, 3), zorder=0)
-    axes.plot(*_seen(foot[None]).T, "o", color=INK, markersize=5)
-    return drawing
-
-
-def _seen(points: FloatArray) -> FloatArray:
-    """Return points (n, 3) as they are seen from -y and from above."""
-    x, y, z = points.T
-    return np.stack((x, y * math.sin(ABOVE) + z * math.cos(ABOVE)), axis=1)
-
-
 def pictures(folder: Path) -> Pictures:
     """Draw each scene, its engines' errors against their times, and what there is of floors."""
-    drawn = {
-        f"{name}-scene": draw_scene(told.system, told.at)
-        for name, told in SCENES.items()
-        if not isinstance(told.system, RollingCylinder)
-    }
-    drawn["cylinder-scene"] = draw_rolling(SCENES["cylinder"].system)
+    drawn = {f"{name}-scene": draw_scene(told.system, told.at) for name, told in SCENES.items()}
     for name, lines in by_scene(folder).items():
         told = SCENES[name]
         low, high = ranked(lines, told.words)

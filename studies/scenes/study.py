@@ -1,4 +1,4 @@
-"""A frame, a slide, a moving floor, a cart and a rolling cylinder, and their exact solutions."""
+"""A frame, a slide, a moving floor and a cart, and their exact solutions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
 from studies.measures.again import WORST_AGAIN, worst_again
 from studies.measures.presets import engine_of, preset_of
-from studies.measures.rolling import reduced
 from studies.measures.words import listed
 from studies.scenes import KINDS, STUDY
 from studies.scenes.carts import cart_row
@@ -43,12 +42,12 @@ def command(
     sources: Sources = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
-    """Hold a frame, a slide, a moving floor, a cart and a cylinder against their exact solutions.
+    """Hold a frame, a slide, a moving floor and a cart against their exact solutions.
 
     Parameters
     ----------
     quick
-        One frame, one slide, one cart, one cylinder, and two places of the steps.
+        One frame, one slide, one cart, and two places of the steps.
     sources
         Who is asked; steps that land on impacts are asked about frames alone, and how a floor is
         moved of engines as they are documented.
@@ -79,9 +78,6 @@ def reduce(job: Job, response: Response) -> Row:
         The columns of `summary` and reason, then those of the scene's table; errors of peaks are
         relative, those of slips and places in metres, and nan where there is none.
     """
-    if job.labels["scene"] == "cylinder":
-        reason = response.reason.name if response.reason else ""
-        return {**reduced(job, response), "reason": reason}
     row = {**summary(job, response), "reason": response.reason.name if response.reason else ""}
     if job.labels["scene"] == "cart":
         return {**row, **cart_row(job, response)}

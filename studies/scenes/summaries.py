@@ -7,15 +7,13 @@ from typing import Any
 
 import pandas as pd
 
-from analytic.response import Outcome, RollingOutcome
+from analytic.response import Outcome
 from engines.run.drive import LAG
 from studies.kit.journal import Row
 from studies.kit.plan import Tables
 from studies.measures.presets import engine_of
-from studies.measures.rolling import ERRORS
 from studies.measures.wrongness import counted, kinds_of, outcomes_of
 from studies.scenes import KINDS, carts, frames
-from studies.scenes.rolling import PARTS
 
 FLOOR = ["engine", "floor", "carried", "carried_after_rest", LAG]
 BLOCK = ["source", "blocks", "median_error", "median_own_error", LAG]
@@ -27,7 +25,6 @@ def tabulate(rows: Sequence[Row]) -> Tables:
     parts = {name: pd.DataFrame([row for row in rows if row["scene"] == name]) for name in KINDS}
     parts["cart"] = parts["cart"].drop(columns="scene", errors="ignore")
     held = {name: part if part.empty else built(part) for name, part in parts.items()}
-    cylinders = parts["cylinder"].drop(columns=["scene", "peak_ratio", "impacts"], errors="ignore")
     own, of_frame, of_cart = "refined == 1", held["frame"], held["cart"]
     return {
         **parts,
@@ -41,8 +38,6 @@ def tabulate(rows: Sequence[Row]) -> Tables:
         "block-summary": lines(parts["block"], of_blocks).reindex(columns=BLOCK),
         "cart-summary": lines(of_cart, of_carts, where=own),
         "cart-steps": lines(of_cart, of_carts, "refined", where=are(carts.AGAIN)),
-        "cylinder": cylinders.rename(columns={"outcome": "became"}),
-        "cylinder-summary": lines(held["cylinder"], of_cylinders, "turns"),
     }
 
 
@@ -168,21 +163,4 @@ def of_blocks(rows: pd.DataFrame) -> dict[str, Any]:
         "median_error": rows["error"].abs().median(),
         "median_own_error": rows["own_error"].abs().median(),
         LAG: rows[LAG].max(),
-    }
-
-
-def of_cylinders(rows: pd.DataFrame) -> dict[str, Any]:
-    """Return how far off cylinders are at most, and how many do not roll on.
-
-    half_step_tilt_error_rad is at half of the step.
-    """
-    whole, half = (rows[rows["step_part"] == step] for step in PARTS)
-    return {
-        "cylinders": len(whole),
-        "lost": int((whole["outcome"] != RollingOutcome.ROLLED.value).sum()),
-        **{name: whole[name].abs().max() for name in ERRORS},
-        "half_step_tilt_error_rad": half["tilt_error_rad"].abs().max(),
-        "tilt_growth": whole["tilt_growth"].max(),
-        "phase_growth": whole["phase_growth"].max(),
-        "us_a_step": us_a_step(whole),
     }

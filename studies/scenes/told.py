@@ -10,31 +10,24 @@ import numpy as np
 import pandas as pd
 
 from analytic import CartBlock, RockingFrame, SlidingBlock
-from analytic.response import Outcome, RollingOutcome
+from analytic.response import Outcome
 from engines import ENGINES
 from studies.drawing.styles import name_of
 from studies.kit import provenance
 from studies.kit.tables import read_table
 from studies.measures.again import commands, with_commands
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
-from studies.measures.rolling import TURNS
 from studies.measures.words import listed, out_of, part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, counted, kinds_of, outcomes_of
 from studies.scenes.cases import jobs
 from studies.scenes.frames import COLUMNS as COLUMNS_OF_FRAMES
 from studies.scenes.frames import LOADS, PHASES
 from studies.scenes.places import PULSES
-from studies.scenes.rolling import CYLINDERS, PARTS
 
 
 def millimetres(size: float) -> str:
     """Return a length [m] in words."""
     return f"{float(f'{1e3 * size:.2g}'):g} mm"
-
-
-def radians(size: float) -> str:
-    """Return an angle [rad] in words."""
-    return f"{size:.2g} rad"
 
 
 class Told(NamedTuple):
@@ -44,12 +37,12 @@ class Told(NamedTuple):
     ----------
     title, asked : str
         What it is, and which of its cases an engine was asked.
-    system : System, CartBlock or RollingCylinder
+    system : System
         What is drawn, at the rotation `at` [rad], or the place [m] where nothing rocks.
     error, words, along : str, callable, str
         Column of the error, how one is said, and what stands along its axis.
-    subject, lost : str
-        What is off, as a sentence begins, and what a wrong outcome is called.
+    subject : str
+        What is off, as a sentence begins.
     """
 
     title: str
@@ -60,7 +53,6 @@ class Told(NamedTuple):
     words: Callable[[float], str]
     along: str
     subject: str
-    lost: str = "wrong"
 
 
 SCENES = {
@@ -97,17 +89,6 @@ SCENES = {
         words=part,
         along="error of the largest rotation, relative  [–]",
         subject="The peak of a block on a cart is",
-    ),
-    "cylinder": Told(
-        title="a rolling cylinder",
-        asked=f"a flat one, a tall one and a coin, {TURNS[0]:g} turns about their own centres",
-        system=CYLINDERS[0],
-        at=0.0,
-        error="tilt_error_rad",
-        words=radians,
-        along="error of the tilt after five turns  [rad]",
-        subject=f"After {TURNS[0]:g} turns the tilt of a rolling cylinder is",
-        lost="lost",
     ),
 }
 """Scenes that have a section of their own, by name."""
@@ -163,8 +144,8 @@ def asked(path: Path, name: str) -> pd.DataFrame:
     return rows[kept]
 
 
-OWN = {"refined": 1.0, "extreme": False, "turns": TURNS[0], "step_part": PARTS[0]}
-"""Columns of rows that differ in steps or in how long they last, and which are told."""
+OWN = {"refined": 1.0, "extreme": False}
+"""Columns of rows that differ in steps or are extreme, and which are told."""
 
 
 def found_in(path: Path) -> pd.DataFrame:
@@ -174,14 +155,7 @@ def found_in(path: Path) -> pd.DataFrame:
 
 
 def kinds_in(rows: pd.DataFrame, error: str) -> pd.Series[str]:
-    """Return the kind of each wrong outcome: by the exact peak, or else by the error's absence.
-
-    A cylinder that does not roll on counts as fallen.
-    """
-    if "became" in rows:
-        failed = rows["became"] == Outcome.FAILED.value
-        lost = rows["became"] != RollingOutcome.ROLLED.value
-        return pd.Series(np.select([failed, lost], [NO_ANSWER, FALL], ""), rows.index)
+    """Return the kind of each wrong outcome: by the exact peak, or else by the error's absence."""
     if "exact" in rows:
         return pd.Series(kinds_of(rows["outcome"], outcomes_of(rows["exact"])), rows.index)
     found, lost = rows["outcome"], rows[error].isna()
@@ -212,7 +186,7 @@ def again(folder: Path) -> pd.DataFrame:
         size = rows[told.error].abs().where(~wrong, np.inf).groupby(rows["source"], sort=False)
         places = size.idxmax()
         for place in places.loc[size.max().sort_values(ascending=False, kind="stable").index]:
-            row = rows.rename(columns={"became": "outcome"}).loc[place].dropna().to_dict()
+            row = rows.loc[place].dropna().to_dict()
             worst[name, place] = {"scene": name, **row}
     quick = bool(provenance.record_of(folder)["settings"]["quick"])
     sources = list(dict.fromkeys(row["source"] for row in worst.values()))
@@ -257,7 +231,7 @@ def sentence(name: str, lines: pd.DataFrame) -> str:
     for preset in in_order(presets):
         mine = lines[presets == preset]
         wrong = int(mine[list(KINDS)].to_numpy().sum())
-        beside = f" ({out_of(wrong, mine['cases'].sum())} {told.lost})" if wrong else ""
+        beside = f" ({out_of(wrong, mine['cases'].sum())} wrong)" if wrong else ""
         said.append(f"{told.words(mine['largest_error'].max())}{beside} {in_words(preset)}")
     return f"{told.subject} off by up to {listed(said)}." if said else ""
 

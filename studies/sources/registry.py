@@ -4,14 +4,13 @@ import inspect
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from functools import partial
-from typing import Any, Literal, NamedTuple, cast
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import MODELS, integrate, simulate
 from analytic.cart import CartBlock
-from analytic.cylinder import RollingCylinder
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
@@ -22,7 +21,6 @@ from engines.parts.compiled import interpreted_first
 from engines.registry import OWN, VARIANTS, named
 from engines.registry import announce as announce_engine
 from engines.scene import Scene, one_of, perhaps
-from studies.sources.rolling import rolled, space_scene
 from studies.sources.scipy_peers import solve_ivp_response
 
 Kind = Literal["model", "solver", "peer", "engine"]
@@ -34,22 +32,7 @@ NOT_OPTIONS = frozenset({"block", "system", "motion", "model", "method", "preset
 """What is asked and who, beside which an option is a question of how."""
 
 
-class Apart(NamedTuple):
-    """A kind of system that is asked about by code of its own.
-
-    `call` puts it to an engine, or to the exact solution, and `pose` makes the scene, which asks an
-    engine for `asks`.
-    """
-
-    call: Callable[..., Response]
-    pose: Callable[..., Any]
-    asks: tuple[Ability, ...]
-
-
-APART: dict[type, Apart] = {RollingCylinder: Apart(rolled, space_scene, (Ability.CYLINDER,))}
-
 NOT_SOLVED = {
-    RollingCylinder: "solves what rocks, and this cylinder rolls",
     SlidingBlock: "solves what rocks, and this block slides",
     CartBlock: "solves a base that moves as it is told, and no cart",
 }
@@ -87,17 +70,9 @@ class Source:
     model: str = "exact"
     name: str = ""
 
-    def about(self, block: System | RollingCylinder) -> "Source":
-        """Return the source as it answers about a system: about some by code of its own."""
-        apart = APART.get(type(block))
-        if apart is None:
-            return self
-        preset = self.preset if ":" in self.name else None
-        return replace(self, call=partial(apart.call, engine=self.engine, preset=preset))
-
     def check(
         self,
-        block: System | RollingCylinder,
+        block: System,
         motion: Motion,
         *,
         duration: float | None,
@@ -113,15 +88,10 @@ class Source:
         """
         if type(block) in NOT_SOLVED and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} {NOT_SOLVED[type(block)]}")
-        if apart := APART.get(type(block)):
-            scene = apart.pose(block, motion, duration=duration, **options)
-            if self.engine:
-                self.used.chosen(scene)
-            return
         taken = inspect.signature(self.call).parameters
         if getattr(self.call, "func", None) is run_engine:
             asked = {**options, "duration": duration, "times": times}
-            self.used.chosen(scene_of(cast(System, block), motion, self.preset, **asked))
+            self.used.chosen(scene_of(block, motion, self.preset, **asked))
         elif all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
             for name in options:
                 one_of("option", name, [name for name in taken if name not in NOT_OPTIONS])
@@ -147,10 +117,9 @@ class Source:
         return bool(self.engine) and self.used.stepping is not Stepping.FIXED
 
 
-def asks_of(block: System | RollingCylinder) -> tuple[Ability, ...]:
+def asks_of(block: System) -> tuple[Ability, ...]:
     """Return what an engine must be able to do for a system, beyond one body."""
-    apart = APART.get(type(block))
-    return apart.asks if apart else layout_of(block, 1.0, None, (0.0, 0.0)).asks
+    return layout_of(block, 1.0, None, (0.0, 0.0)).asks
 
 
 def run_engine(

@@ -14,7 +14,6 @@ from analytic import (
     Record,
     RigidBlock,
     RockingFrame,
-    RollingCylinder,
     SinePulse,
     SlidingBlock,
     Still,
@@ -49,7 +48,6 @@ USUAL = {
     RockingFrame: {**SIZE, "load": 1.0},
     CartBlock: {**SIZE, "mass_ratio": 0.3},
     SlidingBlock: {"width": 1.0, "height": 0.5, "friction": 0.2},
-    RollingCylinder: {"radius": 0.5, "height": 0.5, "tilt": 0.2},
     SinePulse: {"amplitude": 4.0, "omega": 6.0, "half_cycles": 1},
     Record: {"dt": 0.1, "samples": [1.0, 2.0]},
     Delayed: {"motion": HALF_SINE, "rest_s": 1.0},
@@ -80,7 +78,6 @@ WRONG = {
     },
     CartBlock: {"mass_ratio": (0.0, 1.0), "stiffness": (-1.0,), "width": (INF,)},
     SlidingBlock: {"friction": (2.0, 0.0)},
-    RollingCylinder: {"tilt": (0.0, 1.6), "radius": (-1.0,), "height": (NAN,)},
     SinePulse: {
         "amplitude": (NAN,),
         "omega": (0, -2, 1e-308, 1e200),
@@ -120,7 +117,6 @@ WRONG = {
 TOGETHER = [
     (RigidBlock, {"width": 1e-100, "height": 1e60}, "width is 1e-100 and height 1e+60; alpha"),
     (RigidBlock, {"width": 1e60, "height": 1e-100}, "width is 1e+60 and height 1e-100; alpha"),
-    (RollingCylinder, {"height": 2.0, "tilt": 0.6}, "tilt is 0.6; it must be below 0.46"),
     (SinePulse, {"amplitude": 1e200, "omega": 1e-100}, "amplitude is 1e+200 and omega 1e-100; "),
     (SinePulse, {"half_cycles": 10**400}, "half_cycles is 1000"),
     (Record, {"samples": [1.0]}, "two or more"),

@@ -61,7 +61,7 @@ def test_the_scenes_of_the_readme_follow_their_tables(tmp_path):
     copy = tmp_path / readme.PUBLISHED
     shutil.copytree(PUBLISHED, copy)
     cells = cells_of(copy, "Drake")
-    assert "3.8 %<br>→ 9.4·10⁻⁵" in cells and len(cells) == 7
+    assert "3.8 %<br>→ 9.4·10⁻⁵" in cells and len(cells) == 6
     assert "–" in cells_of(copy, "Newton")
     path = copy / "scenes" / "frame.csv"
     rows = read_table(path)

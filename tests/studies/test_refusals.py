@@ -159,7 +159,6 @@ export CASE --out DIR --engine mujoco --scene slide --friction 0.4 | it must be 
 export CASE --out DIR --engine mujoco --scene slide --friction 0.2 --tilt 0.5 | only where something
 animate CASE --out film.gif --scene slide --friction 0.2 --tilt 0.1 | only where something rocks
 animate CASE --out film.gif --scene frame --load 2 --dt 0.001 --sources mujoco | it must come with
-compare --scene cylinder --radius 1 --height 1 --tilt 0.1 --mass-ratio 0.3 | only with --scene cart
 compare CASE --load 2 | --load is 2.0; it may be given only with --scene frame
 animate --results results --mass-ratio 0.3 --out film.gif | --mass-ratio is 0.3 | without --results
 animate CASE --results results --out film.gif | --width | --results
