@@ -6,8 +6,6 @@ are ground times, from the start of the base motion.
 """
 
 from analytic.block import GRAVITY, RigidBlock, Rocker, housner_restitution
-from analytic.cart import CartBlock
-from analytic.cart_forces import cart_demands
 from analytic.conditioning import condition_numbers, conditioning, sensitivities, sensitivity
 from analytic.first_mode import FirstMode, first_mode, rocking_friction
 from analytic.frame import RockingFrame, frame_restitution
@@ -24,7 +22,6 @@ from analytic.steppers import integrate
 __all__ = [
     "GRAVITY",
     "MODELS",
-    "CartBlock",
     "Delayed",
     "FirstMode",
     "History",
@@ -40,7 +37,6 @@ __all__ = [
     "SinePulse",
     "SlidingBlock",
     "Still",
-    "cart_demands",
     "condition_numbers",
     "conditioning",
     "first_mode",

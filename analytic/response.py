@@ -76,14 +76,12 @@ class History:
     """A sampled response: time [s], rotation theta [rad], angular velocity [rad/s], equal lengths.
 
     A history ends where its response ends, for instance when the block lies on its side. Of a
-    `SlidingBlock`, theta holds its place [m] and velocity its rate [m/s], relative to the base. Of
-    a base that feels the block, `base` (2, n) holds place [m] and rate [m/s].
+    `SlidingBlock`, theta holds its place [m] and velocity its rate [m/s], relative to the base.
     """
 
     time: NDArray[np.float64]
     theta: NDArray[np.float64]
     velocity: NDArray[np.float64]
-    base: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

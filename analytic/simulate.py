@@ -8,8 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.block import RigidBlock, Rocker
-from analytic.cart import CartBlock
-from analytic.cart_motion import ridden
 from analytic.cases import law_of, pose, write_pulse
 from analytic.checks import finite, within
 from analytic.kernels.compiled import form_for, kernel, listed
@@ -48,7 +46,7 @@ LOOSEST = 1e-2
 
 
 def simulate(
-    block: Rocker | SlidingBlock | CartBlock,
+    block: Rocker | SlidingBlock,
     motion: Motion,
     model: str | Model = "exact",
     start: tuple[float, float] = REST,
@@ -61,7 +59,7 @@ def simulate(
 
     Parameters
     ----------
-    block : RigidBlock, RockingFrame, SlidingBlock or CartBlock
+    block : RigidBlock, RockingFrame or SlidingBlock
     motion : Motion
         Ground motion, for instance a `SinePulse`; `Still()` where there is none.
     model : {"exact", "housner", "modified", "onset-matched"}
@@ -69,13 +67,12 @@ def simulate(
         Rotation theta [rad] and angular velocity theta' [rad/s] at time zero; at rest by default.
         The sign of theta says which corner carries the block, that of the rate where theta is 0.
         Beyond the critical rotation the motion may bring a block back. Of a sliding block, place
-        [m] and rate [m/s] relative to the base. A cart starts at rest at its spring's zero.
+        [m] and rate [m/s] relative to the base.
     duration : float, optional
         Follow the response until this time [s], at least the duration of the motion. Without it
         the response is followed to the end of the motion, or to the last of the times where that is
         later; outcome and peak of the free rocking after that come from its energy in either case.
-        A sliding block is followed until it stands; a cart on a spring, whose energy decides
-        nothing before, until the peak is decided.
+        A sliding block is followed until it stands.
     times : array_like, optional
         Ground times [s], increasing, at which to sample `Response.history`; it ends where the
         response is no longer followed: with the `duration`, if one is given, or a fall.
@@ -110,10 +107,12 @@ def simulate(
     >>> simulate(block, Still(), start=(0.5 * block.alpha, 0.0), duration=5.0).outcome
     <Outcome.ROCKED: 'rocked'>
     """
-    if isinstance(block, SlidingBlock | CartBlock):
+    if isinstance(block, SlidingBlock):
         if find_model(model).linear:
             raise ValueError(f"model is {model!r}; a {type(block).__name__} has only 'exact'")
-        return _other(block, motion, start, duration, times)
+        until, sampled = check_window(motion, duration, times)
+        kept = None if times is None else sampled
+        return slid(block, motion, start, None if duration is None else until, kept)
     law = find_model(model).law(block.alpha, block.restitution)
     tolerance = within("tolerance", tolerance, TOLERANCE, LOOSEST)
     exactly = accuracy(TOLERANCE if law.linear else tolerance)
@@ -127,23 +126,6 @@ def simulate(
         return march(law, exactly, segments, begin, until * block.p, notes, workspace())
 
     return as_response(block, solve, sampled, times is not None, watched)
-
-
-def _other(
-    body: SlidingBlock | CartBlock,
-    motion: Motion,
-    start: tuple[float, float],
-    duration: float | None,
-    times: ArrayLike | None,
-) -> Response:
-    """Solve a sliding block, or a block on a cart; as `simulate`."""
-    until, sampled = check_window(motion, duration, times)
-    kept = None if times is None else sampled
-    if isinstance(body, SlidingBlock):
-        return slid(body, motion, start, None if duration is None else until, kept)
-    law = find_model("exact").law(body.alpha, body.restitution)
-    begin, segments = folded(body, law, motion, start, sampled), scaled_segments(body, motion)
-    return ridden(body, law, segments, begin, until, kept, duration is not None)
 
 
 def strongest(motion: Motion) -> float:

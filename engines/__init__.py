@@ -33,9 +33,8 @@ It holds
 - where it can take the equal steps of many scenes at once, ``batch``
   (`engines.declaration.BatchEngine`): what each scene's own run gives, and where it has no other,
   its ``build`` too;
-- where it can hold what ``build`` does not, as a base that feels what stands on it
-  (`engines.cart`), what builds that, a line in ``builders``, on which no row of another scene
-  depends;
+- where it can hold what ``build`` does not, as bodies that rest on others, what builds that, a line
+  each in ``builders``, on which no row of another scene depends;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
   as its own documentation shows it, each setting with its source) to the best there is, what the
   studies try of its contact, and what its users should know first (`rules`), each with the variant

@@ -120,11 +120,8 @@ class Preset:
             )
 
     def posed(self, scene: Scene) -> Scene:
-        """Return a scene that says where the base moves: one that is free does in the world."""
-        if scene.frame:
-            return scene
-        free = Ability.FREE_BASE in scene.layout.asks
-        return replace(scene, frame="world" if free else self.frame)
+        """Return a scene that says where the base moves."""
+        return scene if scene.frame else replace(scene, frame=self.frame)
 
     def at_rest(self, *deviations: Deviation) -> "Preset":
         """Return the same on a base at rest, of which no documentation speaks; see `deviations`."""
@@ -213,9 +210,8 @@ class Engine:
     abilities : tuple of Ability
         What `build` can hold beyond one body.
     builders : mapping
-        What else its adapter can hold -> what builds it, called as `build`: a `World`, of a base
-        that feels what stands on it a `engines.cart.CartWorld`. No row of another scene depends on
-        it.
+        What else its adapter can hold -> what builds it, called as `build`: a `World`. No row of
+        another scene depends on it.
     spatial : bool
         Whether the block can leave the plane (setting "planar" put to False).
     precision : Precision
@@ -336,15 +332,10 @@ class Engine:
             if asked not in self.holds:
                 return f"{self.title} is not built here for {asked.value}"
         frame = preset.posed(scene).frame
-        if Ability.FREE_BASE in asks and frame == "base":
-            return "a cart moves in the frame 'world', and frame is 'base'"
         if preset.stepping is Stepping.LANDING and not scene.layout.rocking:
             return f"nothing rocks here on whose impacts {self.name}:{preset.name} could land"
-        unequal = preset.stepping is not Stepping.FIXED
-        for asked in asks:
-            stacked = asked is Ability.STACKED and preset.stacked is None
-            if stacked or (unequal and asked is Ability.FREE_BASE):
-                return f"{self.name}:{preset.name} is not built here for {asked.value}"
+        if Ability.STACKED in asks and preset.stacked is None:
+            return f"{self.name}:{preset.name} is not built here for {Ability.STACKED.value}"
         if frame not in self.frames:
             return f"{self.title} has no frame {frame!r}"
         if wanted in GEOMETRIES and wanted not in self.geometries:

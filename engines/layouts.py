@@ -11,7 +11,6 @@ from enum import Enum
 from typing import Any, NamedTuple
 
 from analytic.block import RigidBlock, Rocker, Upright
-from analytic.cart import CartBlock
 from analytic.frame import MOST_COLUMNS, RockingFrame
 from analytic.slide import SlidingBlock
 
@@ -37,7 +36,6 @@ class Ability(Enum):
 
     SEVERAL = "several bodies on one base"
     STACKED = "bodies that rest on other bodies"
-    FREE_BASE = "a base that feels what stands on it"
 
 
 class Beginning(NamedTuple):
@@ -116,14 +114,11 @@ class Layout(NamedTuple):
     rocking : int
         How many bodies, from the first on, rock about their lower corners as the system's one
         equation says; 0 where nothing rocks.
-    further : tuple of Ability
-        What it asks of an engine that bodies and contacts do not tell.
     """
 
     bodies: tuple[Body, ...]
     contacts: tuple[Contact, ...]
     rocking: int
-    further: tuple[Ability, ...] = ()
 
     def faces(self, body: int) -> list[int]:
         """Return by which of its faces' corners a body touches others."""
@@ -148,7 +143,7 @@ class Layout(NamedTuple):
         """What an engine must be able to do for it, the most particular last."""
         several = (Ability.SEVERAL,) if len(self.bodies) > 1 else ()
         stacked = any(contact.on != BASE for contact in self.contacts)
-        return (*several, *((Ability.STACKED,) if stacked else ()), *self.further)
+        return (*several, *((Ability.STACKED,) if stacked else ()))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -174,7 +169,7 @@ class SideBySide:
         return getattr(self.block, name)
 
 
-System = Rocker | SlidingBlock | SideBySide | CartBlock
+System = Rocker | SlidingBlock | SideBySide
 """What can be posed; its width, height, alpha, p and gravity are those of what rocks or slides."""
 
 
@@ -222,12 +217,6 @@ def one_block(system: Upright, density: float, depth: float | None, start: Start
     """
     block = _standing(system, density, depth, start, 0.0)
     return Layout((block,), (Contact(0, LOWER, BASE),), 1)
-
-
-def on_a_cart(system: CartBlock, density: float, depth: float | None, start: Start) -> Layout:
-    """Return one block on its base, which is a cart."""
-    block = one_block(system, density, depth, start)
-    return block._replace(further=(Ability.FREE_BASE,))
 
 
 def side_by_side(system: SideBySide, density: float, depth: float | None, start: Start) -> Layout:
@@ -281,7 +270,6 @@ LAYOUTS: Mapping[type, Callable[[Any, float, float | None, Start], Layout]] = {
     RockingFrame: frame,
     SlidingBlock: sliding,
     SideBySide: side_by_side,
-    CartBlock: on_a_cart,
 }
 """Class of a system -> what makes its layout of it, a density [kg/m3], a depth [m] and a start."""
 

@@ -125,9 +125,7 @@ class World(Protocol):
 
     One whose base moves may have two attributes more. ``lag_m`` is the largest distance [m] of the
     base, at the end of a step, from where it should have been. ``base_x_m`` is where the base is
-    [m] as the state is read: poses are relative to it. One whose base feels what stands on it may
-    have two methods more. ``observed(scene)`` returns the scene for as long as it is looked at;
-    ``told(response)`` adds what was seen of the base.
+    [m] as the state is read: poses are relative to it.
     """
 
     @property

@@ -38,7 +38,7 @@ def respond(
     source : str
         A name of `studies.sources.registry.SOURCES`; an engine takes a preset after a colon, as in
         ``"mujoco:fixed"``.
-    block : RigidBlock, RockingFrame, SlidingBlock or CartBlock
+    block : RigidBlock, RockingFrame or SlidingBlock
         What stands on the base.
     motion : Motion, optional
         For instance a `SinePulse`; by default the ground does not move.

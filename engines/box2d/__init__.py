@@ -1,9 +1,6 @@
 """Box2D: what it can do, how it is used, what its users should know first."""
 
-from functools import partial
-
 from engines.box2d.build import LIBRARY_STEP_S, Box2DWorld, script
-from engines.box2d.cart import Box2DCart
 from engines.box2d.settings import (
     DOCUMENTED,
     FACTORS,
@@ -14,7 +11,6 @@ from engines.box2d.settings import (
     Box2DSettings,
 )
 from engines.box2d.stacks import Box2DStacks
-from engines.cart import CartWorld
 from engines.declaration import Engine, Precision, Preset, Stepping
 from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
@@ -37,7 +33,6 @@ ENGINE = Engine(
     install="rocking[box2d]",
     build=Box2DWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={Ability.FREE_BASE: partial(CartWorld, Box2DCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(Deviation.MIRROR, Deviation.PEAK, Deviation.RECORD, Deviation.SLEEP),

@@ -1,10 +1,6 @@
 """DART: what it can do, how it is used, what its users should know first."""
 
-from functools import partial
-
-from engines.cart import CartWorld
 from engines.dart.build import DartWorld, script
-from engines.dart.cart import DartCart
 from engines.dart.settings import (
     DOCUMENTED,
     FACTORS,
@@ -36,7 +32,6 @@ ENGINE = Engine(
     install="rocking[dart]",
     build=DartWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={Ability.FREE_BASE: partial(CartWorld, DartCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(),

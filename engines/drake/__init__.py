@@ -1,12 +1,8 @@
 """Drake: what it can do, how it is used, what its users should know first."""
 
-from functools import partial
-
-from engines.cart import CartWorld
 from engines.declaration import Engine, Preset, Stepping
 from engines.disclosure import Deviation
 from engines.drake.build import DrakeWorld
-from engines.drake.cart import DrakeCart
 from engines.drake.script import script
 from engines.drake.settings import (
     CONTROLLED,
@@ -36,7 +32,6 @@ ENGINE = Engine(
     install="rocking[drake]",
     build=DrakeWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={Ability.FREE_BASE: partial(CartWorld, DrakeCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(Deviation.PEAK),

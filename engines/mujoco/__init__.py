@@ -1,13 +1,9 @@
 """MuJoCo: what it can do, how it is used, what its users should know first."""
 
-from functools import partial
-
-from engines.cart import CartWorld
 from engines.declaration import Engine, Preset, Stepping
 from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
-from engines.mujoco.cart import MujocoCart
 from engines.mujoco.script import script
 from engines.mujoco.settings import (
     DEFAULT_CONTACT_S,
@@ -41,7 +37,6 @@ ENGINE = Engine(
     install="rocking",
     build=world_of,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={Ability.FREE_BASE: partial(CartWorld, MujocoCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(),

@@ -1,13 +1,9 @@
 """PhysX: what it can do, how it is used, what its users should know first."""
 
-from functools import partial
-
-from engines.cart import CartWorld
 from engines.declaration import Engine, Precision, Preset, Stepping
 from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.physx.build import PhysxWorld, script
-from engines.physx.cart import PhysxCart
 from engines.physx.settings import (
     DOCUMENTED,
     FACTORS,
@@ -36,7 +32,6 @@ ENGINE = Engine(
     install="rocking[physx]",
     build=PhysxWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={Ability.FREE_BASE: partial(CartWorld, PhysxCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(Deviation.MIRROR),

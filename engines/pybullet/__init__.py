@@ -1,13 +1,9 @@
 """PyBullet: what it can do, how it is used, what its users should know first."""
 
-from functools import partial
-
-from engines.cart import CartWorld
 from engines.declaration import Engine, Preset, Stepping
 from engines.disclosure import Help
 from engines.layouts import Ability
 from engines.pybullet.build import BulletWorld
-from engines.pybullet.cart import BulletCart
 from engines.pybullet.script import script
 from engines.pybullet.settings import (
     DOCUMENTED,
@@ -40,7 +36,6 @@ ENGINE = Engine(
     install="rocking[pybullet]",
     build=BulletWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={Ability.FREE_BASE: partial(CartWorld, BulletCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(),

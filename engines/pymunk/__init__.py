@@ -1,13 +1,9 @@
 """pymunk: what it can do, how it is used, what its users should know first."""
 
-from functools import partial
-
-from engines.cart import CartWorld
 from engines.declaration import Engine, Preset, Stepping
 from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.pymunk.build import LIBRARY_STEP_S, PymunkWorld, script
-from engines.pymunk.cart import PymunkCart
 from engines.pymunk.settings import (
     DOCUMENTED,
     FACTORS,
@@ -36,7 +32,6 @@ ENGINE = Engine(
     install="rocking[pymunk]",
     build=PymunkWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={Ability.FREE_BASE: partial(CartWorld, PymunkCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(Deviation.MIRROR, Deviation.PEAK, Deviation.RECORD),

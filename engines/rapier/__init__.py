@@ -1,13 +1,9 @@
 """Rapier: what it can do, how it is used, what its users should know first."""
 
-from functools import partial
-
-from engines.cart import CartWorld
 from engines.declaration import Engine, Precision, Preset, Stepping
 from engines.disclosure import Deviation, Help
 from engines.layouts import Ability
 from engines.rapier.build import RapierWorld, script
-from engines.rapier.cart import RapierCart
 from engines.rapier.settings import (
     DOCUMENTED,
     FACTORS,
@@ -36,7 +32,6 @@ ENGINE = Engine(
     install="rocking[rapier]",
     build=RapierWorld,
     abilities=(Ability.SEVERAL, Ability.STACKED),
-    builders={Ability.FREE_BASE: partial(CartWorld, RapierCart)},
     presets=(
         NAIVE,
         NAIVE.at_rest(Deviation.MIRROR, Deviation.RECORD, Deviation.SLEEP),

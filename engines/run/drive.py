@@ -128,8 +128,6 @@ def simulate_world(
     Response
         A failed one with its reason where the world fails or the limits of the scene are reached.
     """
-    watched: Callable[[Scene], Scene] | None = getattr(world, "observed", None)
-    scene = watched(scene) if watched else scene
     monitor = Monitor(scene, dt_s, stepping, world.moment, resolution)
     go = driven(monitor, world) if scene.compiled else None
     go = go or Stepper(monitor, world, stepping).go
@@ -148,11 +146,8 @@ def simulate_world(
     problem = _fault(world) or monitor.problem or problem
     if problem:
         reason, message = problem
-        found = Response.failure(message, reason=reason, steps=steps, wall_s=wall_s)
-    else:
-        found = _with_lag(monitor.response(steps=steps, wall_s=wall_s), world)
-    told: Callable[[Response], Response] | None = getattr(world, "told", None)
-    return told(found) if told else found
+        return Response.failure(message, reason=reason, steps=steps, wall_s=wall_s)
+    return _with_lag(monitor.response(steps=steps, wall_s=wall_s), world)
 
 
 def _with_lag(response: Response, world: World) -> Response:

@@ -7,7 +7,6 @@ from typing import Any
 
 from studies.compare.rendering import valid
 from studies.kit.journal import Row
-from studies.measures.carts import place_error
 
 SHARED = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
 BESIDE = ("error", "velocity_ratio", "impact_error")
@@ -40,7 +39,7 @@ def records(rows: list[Row], note: str = "") -> list[dict[str, Any]]:
     list of dict
         The columns SHARED, BESIDE, CONDITIONED and ESTIMATED of a row, as far as it has them; what
         the exact solution needs, alike in all: min_normal, friction_needed and valid; and, where
-        there are any, slips [m], place_error_m and the observables of the scene.
+        there are any, slips [m] and the observables of the scene.
     """
     objects: list[dict[str, Any]] = []
     for row in rows:
@@ -53,8 +52,6 @@ def records(rows: list[Row], note: str = "") -> list[dict[str, Any]]:
         response = row["response"]
         if response.slips:
             item["slips"] = list(response.slips)
-        if math.isfinite(off := place_error(response, exact)):
-            item["place_error_m"] = off
         objects.append({**item, "valid": valid(exact), **response.observables})
     return objects
 

@@ -10,8 +10,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analytic.cart import CartBlock
-from analytic.cart_forces import cart_demands
 from analytic.frame import RockingFrame
 from analytic.frame_forces import frame_demands
 from analytic.motion import Motion, SinePulse, Still
@@ -23,7 +21,6 @@ from engines.run.drive import LAG
 from studies.cases.paper import PULSES
 from studies.kit.journal import Row
 from studies.kit.posing import Posed
-from studies.measures.carts import place_error
 from studies.measures.differences import scientific
 from studies.measures.halving import NO_BOUND
 from studies.measures.samples import samples
@@ -33,9 +30,6 @@ Columns = dict[str, list[Any]]
 
 OF_A_FRAME = {"parting": "parting/θcr", "tilt": "beam/θcr", "drift_m": "drift [m]"}
 """Observable of a frame -> its column."""
-
-OF_A_CART = {"momentum_error": "momentum", "cart_m": "cart [m]"}
-"""The same of a cart."""
 
 SEEN_M = 1e-6
 """Of a floor's lag, what is shown [m]."""
@@ -52,9 +46,6 @@ def first_line(system: System, degrees: bool) -> str:
     numbers = f"α = θcr = {alpha}, p = {system.p:.5g} rad/s"
     if isinstance(system, RockingFrame):
         return f"frame   {system.columns} columns of {sizes}, load {system.load:g}: {numbers}"
-    if isinstance(system, CartBlock):
-        cart = f"m/(m+M) = {system.mass_ratio:g}, k/(m+M) = {system.stiffness:g} /s²"
-        return f"cart    {cart}, block {sizes}: {numbers}"
     return f"block   {sizes}: {numbers}"
 
 
@@ -75,10 +66,7 @@ def columns_of(
             "lift [m]": _observed(answers, "lift_m"),
         }
     seen = OF_A_FRAME if isinstance(system, RockingFrame) else {}
-    seen = OF_A_CART if isinstance(system, CartBlock) else seen
-    places = [place_error(answer, rows[0]["exact"]) for answer in answers]
     perhaps = {
-        "off [m]": list(map(scientific, places)),
         "slip/B": [scientific(answer.slip_m / system.width) for answer in answers],
         "lag [m]": _observed(answers, LAG, SEEN_M),
     }
@@ -98,40 +86,23 @@ def columns_of(
     }
 
 
-def meanings(system: System, posed: Posed, exact: Response, window: float) -> list[str]:
+def meanings(system: System, posed: Posed, exact: Response) -> list[str]:
     """Return what the columns mean, and what the exact solution needs, a line each."""
     if isinstance(system, SlidingBlock):
         return ["vs      largest difference of a slip, over the largest slip"]
-    if isinstance(system, CartBlock):
-        whose, valid_if = "the exact", cart_validity(system, posed, window)
-    elif isinstance(system, RockingFrame):
+    if isinstance(system, RockingFrame):
         whose, valid_if = "the exact", frame_validity(system, posed, exact)
     else:
         whose, valid_if = "Housner's", validity(exact)
     parting = "parting largest difference of two columns' rotations; beam: its largest rotation"
-    moved = (
-        "off     largest error of the cart's place; momentum: of block and cart, over both's sizes"
-    )
     return [
         "κ       per cent of the exact peak for one of the amplitude; sens: the sensitivity",
         "late    largest error of the first five impact times, times p",
         f"ratio   velocity after over before an impact, the median; {whose} "
         f"η = {system.restitution:.6g}",
         *[parting] * isinstance(system, RockingFrame),
-        *[moved] * isinstance(system, CartBlock),
         f"valid   {valid_if}",
     ]
-
-
-def cart_validity(cart: CartBlock, posed: Posed, window: float) -> str:
-    """Say what the exact solution of a cart needs of the block's contact, or what fails in it."""
-    needs = cart_demands(cart, posed.motion, posed.start, duration=window)
-    if math.isnan(needs.friction):
-        return UNKNOWN
-    if needs.normal <= 0.0:
-        return "not here: the pivot would lift off, and an engine is right to differ"
-    least = f"the normal force stays above {needs.normal:.3g} of the weight"
-    return f"with friction of {needs.friction:.3g} or more, up to a lean of 2 α; {least}"
 
 
 def frame_validity(frame: RockingFrame, posed: Posed, exact: Response) -> str:
@@ -225,7 +196,7 @@ def table_text(
             f"ground  {ground(motion, block)}; observed for {window:.4g} s",
             *([f"start   {_start(block, posed, degrees)}"] if posed.start != (0.0, 0.0) else []),
             *([f"base    {note}"] if note else []),
-            *meanings(block, posed, rows[0]["exact"], window),
+            *meanings(block, posed, rows[0]["exact"]),
             "time    of this one run; of many cases each takes less, as its functions are compiled",
             "",
             right_aligned(columns),

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from analytic import RigidBlock, RockingFrame, frame_faults, simulate
-from analytic.cart import CartBlock
-from analytic.motion import FloatArray, Motion, SinePulse, Still
+from analytic.motion import FloatArray, Motion, SinePulse
 from analytic.record import Record
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
@@ -55,15 +54,12 @@ from studies.sources.registry import DEFAULT_EFFORT, Effort, core_sources
 EDGE = 0.01
 """An answer hangs on its amplitude where so much of it makes the difference of a fall."""
 
-SMALL = 1e-6
-"""Change of the amplitude by which a derivative is found."""
-
 TIMED_IMPACTS = 5
 """First impacts whose times are compared."""
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", *core_sources())
 OF_A_SLIDE = ("exact", *core_sources())
-"""By default asked of a block that slides or stands on a cart, which have no linearization."""
+"""By default asked of a block that slides, which has no linearization."""
 
 
 def command(
@@ -97,15 +93,13 @@ def command(
     json
         Print one JSON object for each source, one a line, instead of the table.
     """
-    if standing.scene in ("slide", "cart") and sources == DEFAULT_SOURCES:
+    if standing.scene == "slide" and sources == DEFAULT_SOURCES:
         sources = OF_A_SLIDE
     refuse_both(dt=yours.dt, step=effort.step)
     words = "a block requires its full width and height [m]"
     width, height = required(words, width=width, height=height)
     if not standing.rocks:
         refuse_given({"plot": plot}, WHERE_IT_ROCKS)
-    if standing.scene == "cart":
-        refuse_given({"estimate": estimate or None}, "only on a base that moves as it is told")
     check_plot(plot)
     block = standing.system(width, height, yours.friction)
     posed = standing.pose(block, excitation)
@@ -118,7 +112,7 @@ def command(
         posed,
         sources,
         window,
-        times=np.linspace(0.0, window, 1501) if plot or standing.scene == "cart" else None,
+        times=np.linspace(0.0, window, 1501) if plot else None,
         effort=effort,
         yours=yours,
         estimate=estimate,
@@ -140,20 +134,7 @@ def _conditioning(block: System, posed: Posed, exact: Response) -> dict[str, flo
     """Return kappa and sensitivity of the exact peak, nan where there is none."""
     if isinstance(block, SlidingBlock):
         return {"kappa": math.nan, "sensitivity": math.nan}
-    if isinstance(block, CartBlock):
-        return {"kappa": _kappa_of_cart(block, posed, exact), "sensitivity": math.nan}
     return conditioning_of_one(block, posed.motion, posed.start, exact)
-
-
-def _kappa_of_cart(cart: CartBlock, posed: Posed, exact: Response) -> float:
-    """Return d ln(peak)/d ln(a_p) by a difference; nan unless the block rocks and survives."""
-    if exact.outcome is not Outcome.ROCKED or isinstance(posed.motion, Still):
-        return math.nan
-    low, high = (
-        simulate(cart, _scaled(posed.motion, 1.0 + part), start=posed.start).peak_ratio
-        for part in (-SMALL, SMALL)
-    )
-    return math.log(high / low) / (2.0 * SMALL) if math.isfinite(low * high) else math.nan
 
 
 def hanging(block: System, posed: Posed, window: float, exact: Response) -> str:

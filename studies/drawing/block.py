@@ -9,10 +9,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Arc, Circle, FancyArrowPatch, Polygon, Rectangle
+from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
 
 from analytic.block import RigidBlock
-from analytic.cart import CartBlock
 from analytic.motion import FloatArray
 from engines.layouts import System, layout_of
 from studies.drawing.styles import engine_title, style_of, title_of
@@ -74,7 +73,7 @@ def draw_block() -> Figure:
     return drawing
 
 
-def draw_scene(system: System | CartBlock, at: float) -> Figure:
+def draw_scene(system: System, at: float) -> Figure:
     """Draw the bodies of a system where they are, and dashed where they are at rest.
 
     Parameters
@@ -87,31 +86,19 @@ def draw_scene(system: System | CartBlock, at: float) -> Figure:
     every = np.concatenate((rest, moved))
     (left, _), (right, top) = every.min(axis=(0, 1)), every.max(axis=(0, 1))
     spare = 0.12 * max(right - left, top)
-    foot = 1.5 * spare if isinstance(system, CartBlock) else 0.0
-    across, high = right - left + 2.0 * spare, top + foot + 2.0 * spare
+    across, high = right - left + 2.0 * spare, top + 2.0 * spare
     inch = min(4.4 / across, 3.4 / high)
     drawing = Figure(figsize=(across * inch, 0.3 + high * inch), layout="constrained")
     axes = drawing.subplots()
-    axes.set(xlim=(left - spare, right + spare), ylim=(-spare - foot, top + spare), aspect="equal")
+    axes.set(xlim=(left - spare, right + spare), ylim=(-spare, top + spare), aspect="equal")
     axes.set_axis_off()
-    ground = (left - spare, -0.5 * spare - foot), across, 0.5 * spare
+    ground = (left - spare, -0.5 * spare), across, 0.5 * spare
     axes.add_patch(Rectangle(*ground, color=GROUND, linewidth=0))
-    if foot:
-        _cart(axes, left - 0.6 * spare, right + 0.6 * spare, foot)
     for corners in moved:
         axes.add_patch(Polygon(corners, facecolor=BLOCK, edgecolor=INK, linewidth=1.8))
     for corners in rest:
         axes.add_patch(Polygon(corners, fill=False, linestyle=(0, (4, 3)), edgecolor=SOFT))
     return drawing
-
-
-def _cart(axes: Axes, left: float, right: float, high: float) -> None:
-    """Draw a cart below the level 0, on two wheels."""
-    wheel = 0.25 * high
-    axes.add_patch(Rectangle((left, wheel - high), right - left, high - wheel, facecolor="white",
-                             edgecolor=INK, linewidth=1.2))  # fmt: skip
-    for x in (left + 1.5 * wheel, right - 1.5 * wheel):
-        axes.add_patch(Circle((x, wheel - high), wheel, facecolor=GROUND, edgecolor=INK))
 
 
 def _dimensions(axes: Axes, corners: FloatArray) -> None:

@@ -8,14 +8,12 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from analytic.block import RigidBlock
-from analytic.cart import CartBlock
 from analytic.frame import RockingFrame
 from analytic.slide import SlidingBlock
 from engines.layouts import System
 from studies.kit.arguments import (
     BadInputError,
     Count,
-    NotNegative,
     Positive,
     as_bad_input,
     one_of,
@@ -32,14 +30,13 @@ LEAST_COLUMNS = 2
 
 OF_A_SCENE = {
     "frame": ("columns", "load"),
-    "cart": ("mass_ratio", "stiffness"),
 }
 """Scene -> the options that are its own."""
 
 Width = Annotated[Positive, Parameter(help="Full width B of the block or of each column [m].")]
 Height = Annotated[Positive, Parameter(help="Full height H of the block or of each column [m].")]
 
-SceneName = Literal["block", "frame", "slide", "cart"]
+SceneName = Literal["block", "frame", "slide"]
 
 
 def posed_block(width: float, height: float) -> RigidBlock:
@@ -72,23 +69,16 @@ class Standing:
     ----------
     scene
         block: one block that rocks. frame: a beam on columns that rock, of --width and --height
-        each, with --load. slide: one block that slides, by a --friction below B/H. cart: one block
-        on a cart of --mass-ratio that feels it, pushed by the force (m + M) times the acceleration.
+        each, with --load. slide: one block that slides, by a --friction below B/H.
     columns
         Of a frame, from 2 to 100.
     load
         Of a frame: the mass of its beam over that of all columns.
-    mass_ratio
-        Of a cart: the block's mass over that of block and cart, between 0 and 1.
-    stiffness
-        Of a cart: that of its spring over the mass of both [1/s²]; 0 by default, a free cart.
     """
 
     scene: Annotated[SceneName, one_of(SceneName)] = "block"
     columns: Count | None = None
     load: Positive | None = None
-    mass_ratio: Positive | None = None
-    stiffness: NotNegative | None = None
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system that the options mean.
@@ -117,10 +107,6 @@ class Standing:
                 words = "a block that slides requires one below B/H"
                 (friction,) = required(words, friction=friction)
                 return SlidingBlock(**sizes, friction=friction)
-            if self.scene == "cart":
-                words = "a cart requires the block's mass over that of both"
-                (ratio,) = required(words, mass_ratio=self.mass_ratio)
-                return CartBlock(**sizes, mass_ratio=ratio, stiffness=self.stiffness or 0.0)
             if self.scene == "block":
                 return block
         raise BadInputError(f"--scene is {self.scene!r}; it must be another one here")

@@ -12,7 +12,6 @@ from typing import Any
 import pandas as pd
 
 from analytic.block import GRAVITY, RigidBlock
-from analytic.cart import CartBlock
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.slide import SlidingBlock
@@ -170,14 +169,13 @@ def _asked(block: System) -> System:
     """Return what the options of the command line make of a block."""
     options = _scene_of(block)
     kind, _ = SCENES[options.pop("scene", "")]
-    asked: System = kind(**{name.replace("-", "_"): value for name, value in options.items()})
+    asked: System = kind(**options)
     return asked
 
 
 SCENES: Mapping[str, tuple[Any, tuple[str, ...]]] = {
     "frame": (RockingFrame, ("columns", "load", "width", "height")),
     "slide": (SlidingBlock, ("friction", "width", "height")),
-    "cart": (CartBlock, ("mass-ratio", "width", "height")),
     "": (RigidBlock, ("width", "height")),
 }
 """What `--scene` poses, by default one block, and its options."""
@@ -188,8 +186,7 @@ def _scene_of(block: Any) -> dict[str, Any]:
     scene, names = next(
         (name, of) for name, (kind, of) in SCENES.items() if isinstance(block, kind)
     )
-    spring = ("stiffness",) if scene == "cart" and block.stiffness else ()
-    sizes = {name: getattr(block, name.replace("-", "_")) for name in (*names, *spring)}
+    sizes = {name: getattr(block, name) for name in names}
     return {**({"scene": scene} if scene else {}), **sizes}
 
 

@@ -1,35 +1,34 @@
-"""Scenes beyond one block: a frame, a slide, a moving floor, a cart."""
+"""Scenes beyond one block: a frame, a slide, a moving floor."""
 
 from studies.kit.study import Chapter, Study
 
-KINDS = ("frame", "slide", "floor", "block", "cart")
+KINDS = ("frame", "slide", "floor", "block")
 
 STUDY = Study(
     name="scenes",
-    help="""A frame, a slide, a moving floor, a cart; their exact solutions.
+    help="""A frame, a slide, a moving floor; their exact solutions.
 
 The frame is a beam on two or three free columns, which turn as a block of another size and
 restitution does, and once on five, or much lighter or heavier than they are; the slide is friction
 alone: two slips under a pulse, a launch, and a hold below the onset; the floor is moved in each way
 that an engine has, and should carry a block along; a block that rocks on it is held against the
-exact answer on the floor as it should move, and as it moved; the cart, free or on a spring, is
-pushed and feels its block. What an engine is not built for is a row that says so. Resumable.""",
+exact answer on the floor as it should move, and as it moved. What an engine is not built for is a
+row that says so. Resumable.""",
     table="frame-summary.csv",
     tables=(
         *(f"{kind}.csv" for kind in KINDS),
         *(f"{kind}-summary.csv" for kind in KINDS),
         "frame-extremes.csv",
         "frame-steps.csv",
-        "cart-steps.csv",
     ),
     chapter=Chapter(
-        question="Does it hold for frames, friction alone, floors, carts?",
+        question="Does it hold for frames, friction alone, moving floors?",
         tables=(
             *(f"{kind}-summary.csv" for kind in KINDS),
-            *("frame-extremes.csv", "frame-steps.csv", "cart-steps.csv"),
+            *("frame-extremes.csv", "frame-steps.csv"),
         ),
         minutes=(0.5, 12.0),
-        weaker="One frame, one slide, one cart, two places of the steps.",
+        weaker="One frame, one slide, two places of the steps.",
     ),
     captions={
         "frame-scene": (
@@ -40,10 +39,6 @@ pushed and feels its block. What an engine is not built for is a row that says s
             "A sliding block on its base, to the right of where it began, which is dashed; it "
             "stays flat, and only friction holds it."
         ),
-        "cart-scene": (
-            "A block on a cart that leans to the right about its right corner; dashed, where it is "
-            "at rest. The cart rolls freely, or on a spring."
-        ),
         **{
             f"{scene}-time": (
                 f"{scenes}: for each engine and preset a line from the median to the largest error "
@@ -52,7 +47,6 @@ pushed and feels its block. What an engine is not built for is a row that says s
             for scene, scenes, what in (
                 ("frame", "Frames", "the peak"),
                 ("slide", "Slides", "a slip"),
-                ("cart", "Carts", "the peak"),
             )
         },
         "floor": (

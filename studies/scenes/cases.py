@@ -1,4 +1,4 @@
-"""The frames, the slides, the floors and the carts that every engine is asked about."""
+"""The frames, the slides and the floors that every engine is asked about."""
 
 import itertools
 import math
@@ -15,7 +15,6 @@ from analytic.record import Record
 from engines.layouts import System
 from engines.parts.factors import DEFAULT
 from studies.kit.jobs import Job
-from studies.scenes.carts import carts
 from studies.scenes.frames import frames
 from studies.scenes.places import PULSES
 from studies.sources.registry import resolve
@@ -32,7 +31,7 @@ HELD_S = 2.0
 
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
-    """Return the job of every case and source: of frames first, of carts last.
+    """Return the job of every case and source: of frames first.
 
     Parameters
     ----------
@@ -49,10 +48,10 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     Raises
     ------
     BadInputError
-        If a source is neither exact nor an engine: other sources know neither slides nor carts.
+        If a source is neither exact nor an engine: other sources know no slides.
     """
     beyond = [*slides(sources, quick), *floors(sources), *blocks(sources, quick)]
-    return [*frames(sources, quick), *beyond, *carts(sources, quick)]
+    return [*frames(sources, quick), *beyond]
 
 
 def slides(sources: Sequence[str], quick: bool) -> Iterator[Job]:

@@ -78,4 +78,4 @@ def _jobs(
             motion=SinePulse.in_g(pulse[0], omega=pulse[1], half_cycles=2),
             source=source,
         )
-        yield from placed(job, phases, refined, "phase")
+        yield from placed(job, phases, refined)

@@ -34,32 +34,31 @@ def own_step(source: str, p: float) -> float:
     return used.step if math.isfinite(used.step) else used.step_s * p
 
 
-def placed(job: Job, phases: int, refined: float, label: str) -> Iterator[Job]:
+def placed(job: Job, phases: int, refined: float) -> Iterator[Job]:
     """Yield a job in steps by which the first impact falls into different parts of equal ones.
 
     With n = t/dt steps before an impact at t, a step of dt (1 + k/(N n)) has it the part k/N of a
-    step earlier, for k = 0, 1, ..., N - 1. A source without equal steps is asked once.
+    step earlier, for k = 0, 1, ..., N - 1. k is the label phase. A source without equal
+    steps is asked once.
 
     Parameters
     ----------
     job : Job
-        Of a frame or a cart, without options; its exact response has an impact.
+        Of a frame, without options; its exact response has an impact.
     phases : int
         N, at least 1.
     refined : float
         Steps over the source's own; at another than 1 only who takes equal steps is asked.
-    label : str
-        Name of the label that is k.
     """
     step = own_step(job.source, job.block.p)
     if math.isnan(step):
         if refined == 1.0:
-            yield replace(job, labels={**job.labels, label: 0})
+            yield replace(job, labels={**job.labels, "phase": 0})
         return
     impact = first_impact(job.block, cast(Hashable, job.motion), job.duration) * job.block.p
     for phase in range(phases):
         moved = step * (1.0 + phase / phases * step / impact)
-        labels = {**job.labels, label: phase}
+        labels = {**job.labels, "phase": phase}
         yield replace(job, labels=labels, options={"step": refined * moved})
 
 

@@ -1,4 +1,4 @@
-"""A frame, a slide, a moving floor and a cart, and their exact solutions."""
+"""A frame, a slide and a moving floor, and their exact solutions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,6 @@ from studies.measures.again import WORST_AGAIN, worst_again
 from studies.measures.presets import engine_of, preset_of
 from studies.measures.words import listed
 from studies.scenes import KINDS, STUDY
-from studies.scenes.carts import cart_row
 from studies.scenes.cases import jobs
 from studies.scenes.frames import SEEN
 from studies.scenes.own_floor import exact_on_its_floor
@@ -42,12 +41,12 @@ def command(
     sources: Sources = DEFAULT_SOURCES,
     running: Running = DEFAULT_RUNNING,
 ) -> int:
-    """Hold a frame, a slide, a moving floor and a cart against their exact solutions.
+    """Hold a frame, a slide and a moving floor against their exact solutions.
 
     Parameters
     ----------
     quick
-        One frame, one slide, one cart, and two places of the steps.
+        One frame, one slide, and two places of the steps.
     sources
         Who is asked; steps that land on impacts are asked about frames alone, and how a floor is
         moved of engines as they are documented.
@@ -79,8 +78,6 @@ def reduce(job: Job, response: Response) -> Row:
         relative, those of slips and places in metres, and nan where there is none.
     """
     row = {**summary(job, response), "reason": response.reason.name if response.reason else ""}
-    if job.labels["scene"] == "cart":
-        return {**row, **cart_row(job, response)}
     exact = simulate(job.block, job.motion, start=job.options.get("start", (0.0, 0.0)))
     seen = response.observables
     if job.labels["scene"] == "frame":

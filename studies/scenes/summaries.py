@@ -13,7 +13,7 @@ from studies.kit.journal import Row
 from studies.kit.plan import Tables
 from studies.measures.presets import engine_of
 from studies.measures.wrongness import counted, kinds_of, outcomes_of
-from studies.scenes import KINDS, carts, frames
+from studies.scenes import KINDS, frames
 
 FLOOR = ["engine", "floor", "carried", "carried_after_rest", LAG]
 BLOCK = ["source", "blocks", "median_error", "median_own_error", LAG]
@@ -23,12 +23,11 @@ BLOCK = ["source", "blocks", "median_error", "median_own_error", LAG]
 def tabulate(rows: Sequence[Row]) -> Tables:
     """Return the rows of each scene, and a line for each source that is built for it."""
     parts = {name: pd.DataFrame([row for row in rows if row["scene"] == name]) for name in KINDS}
-    parts["cart"] = parts["cart"].drop(columns="scene", errors="ignore")
     held = {name: part if part.empty else built(part) for name, part in parts.items()}
-    own, of_frame, of_cart = "refined == 1", held["frame"], held["cart"]
+    of_frame = held["frame"]
     return {
         **parts,
-        "frame-summary": lines(of_frame, of_frames, where=f"{own} and not extreme"),
+        "frame-summary": lines(of_frame, of_frames, where="refined == 1 and not extreme"),
         "frame-extremes": lines(of_frame, of_extremes, "columns", "load", where="extreme"),
         "frame-steps": lines(of_frame, of_frame_steps, "refined", where=are(frames.AGAIN)),
         "slide-summary": lines(held["slide"], of_slides),
@@ -36,8 +35,6 @@ def tabulate(rows: Sequence[Row]) -> Tables:
             columns=FLOOR
         ),
         "block-summary": lines(parts["block"], of_blocks).reindex(columns=BLOCK),
-        "cart-summary": lines(of_cart, of_carts, where=own),
-        "cart-steps": lines(of_cart, of_carts, "refined", where=are(carts.AGAIN)),
     }
 
 
@@ -118,17 +115,6 @@ def of_extremes(rows: pd.DataFrame) -> dict[str, Any]:
     kinds = pd.Series(kinds_of(rows["outcome"], outcomes_of(rows["exact"])))
     seen = {"parting": rows["parting"].max()}
     return {"frames": len(rows), **counted(kinds), **errors_of(rows), **seen}
-
-
-def of_carts(rows: pd.DataFrame) -> dict[str, Any]:
-    """Return how many carts are wrong, and how far off the others."""
-    return {
-        **{"carts": len(rows), **_right(rows, "agrees")},
-        "median_eta_error": rows["eta_error"].abs().median(),
-        "place_error_m": rows["place_error_m"].max(),
-        "momentum_error": rows["momentum_error"].max(),
-        "us_a_step": us_a_step(rows),
-    }
 
 
 def of_slides(rows: pd.DataFrame) -> dict[str, Any]:

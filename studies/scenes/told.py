@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from analytic import CartBlock, RockingFrame, SlidingBlock
+from analytic import RockingFrame, SlidingBlock
 from analytic.response import Outcome
 from engines import ENGINES
 from studies.drawing.styles import name_of
@@ -79,16 +79,6 @@ SCENES = {
         words=millimetres,
         along="error of a slip  [m]",
         subject="The slips of a block are",
-    ),
-    "cart": Told(
-        title="a block on a cart",
-        asked="four ratios of the masses and two springs, three pulses, three places in a step",
-        system=CartBlock(width=0.5, height=1.5, mass_ratio=0.5),
-        at=0.12,
-        error="error",
-        words=part,
-        along="error of the largest rotation, relative  [–]",
-        subject="The peak of a block on a cart is",
     ),
 }
 """Scenes that have a section of their own, by name."""

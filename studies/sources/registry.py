@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import MODELS, integrate, simulate
-from analytic.cart import CartBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
@@ -30,13 +29,6 @@ none of them crashes; an engine may."""
 
 NOT_OPTIONS = frozenset({"block", "system", "motion", "model", "method", "preset", "times"})
 """What is asked and who, beside which an option is a question of how."""
-
-
-NOT_SOLVED = {
-    SlidingBlock: "solves what rocks, and this block slides",
-    CartBlock: "solves a base that moves as it is told, and no cart",
-}
-"""Kind of a system -> why only the exact solution, and engines, answer about it."""
 
 
 class UnknownSourceError(ValueError):
@@ -86,8 +78,8 @@ class Source:
         TypeError, ValueError
             If an option is not one of its own, or a value is not allowed.
         """
-        if type(block) in NOT_SOLVED and not self.engine and self.name != "exact":
-            raise ValueError(f"{self.name} {NOT_SOLVED[type(block)]}")
+        if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
+            raise ValueError(f"{self.name} solves what rocks, and this block slides")
         taken = inspect.signature(self.call).parameters
         if getattr(self.call, "func", None) is run_engine:
             asked = {**options, "duration": duration, "times": times}

@@ -9,7 +9,6 @@ import pytest
 from given import BLOCK, G
 
 from analytic import (
-    CartBlock,
     Delayed,
     Record,
     RigidBlock,
@@ -46,7 +45,6 @@ RELEASED = {"motion": Still(), "start": (0.1, 0.0), "duration": 1.0}
 USUAL = {
     RigidBlock: SIZE,
     RockingFrame: {**SIZE, "load": 1.0},
-    CartBlock: {**SIZE, "mass_ratio": 0.3},
     SlidingBlock: {"width": 1.0, "height": 0.5, "friction": 0.2},
     SinePulse: {"amplitude": 4.0, "omega": 6.0, "half_cycles": 1},
     Record: {"dt": 0.1, "samples": [1.0, 2.0]},
@@ -76,7 +74,6 @@ WRONG = {
         "width": (0.0,),
         "restitution": (1.1, NAN),
     },
-    CartBlock: {"mass_ratio": (0.0, 1.0), "stiffness": (-1.0,), "width": (INF,)},
     SlidingBlock: {"friction": (2.0, 0.0)},
     SinePulse: {
         "amplitude": (NAN,),
@@ -128,7 +125,6 @@ TOGETHER = [
     (Record, {"dt": 1e-100, "samples": [0.0, 1e250]}, "dt is 1e-100 and a sample 1e+250; the slop"),
     (simulate, {"times": [1.0, 0.5]}, "increasing"),
     *((ask, {**RELEASED, "times": [-0.5, 0.5]}, "times begin at -0.5") for ask in ROUTES),
-    (simulate, {"block": CartBlock(**SIZE, mass_ratio=0.3), "model": "housner"}, "only 'exact'"),
     (simulate, {"block": BOX, "model": "housner"}, "a SlidingBlock has only 'exact'"),
     (simulate, {"block": BOX, "start": 3}, "start is 3; it must be x"),
     (simulate, {"block": BOX, "duration": 0.1}, "duration is 0.1"),

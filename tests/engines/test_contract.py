@@ -11,10 +11,10 @@ from commanding import python
 from known import Bare, ScriptedWorld
 from uses import BLOCK, CORE, HERE, SHAKEN, every_use, held_frames, pulse, rocked, scene
 
-from analytic import CartBlock, RockingFrame, SlidingBlock
+from analytic import RockingFrame, SlidingBlock
 from analytic.response import Outcome, Reason, Response
 from engines import ENGINES
-from engines.declaration import UNTUNED, Stepping
+from engines.declaration import UNTUNED
 from engines.layouts import Ability, SideBySide
 from engines.registry import OWN, VARIANTS
 from engines.run.drive import build, run, simulate_world
@@ -63,7 +63,6 @@ def test_a_library_that_is_missing_is_a_row_that_says_how_to_install_it(name):
 ABLE = {
     Ability.SEVERAL: (SideBySide(block=BLOCK), {*OWN}),
     Ability.STACKED: (RockingFrame(**SIZE, load=1.0), {*OWN} - {"warp", "mjx"}),
-    Ability.FREE_BASE: (CartBlock(**SIZE, mass_ratio=0.5), {*OWN} - {"newton", "warp", "mjx"}),
 }
 """Ability -> a system that asks for it, and which of the project's own engines have it."""
 
@@ -74,8 +73,7 @@ def test_who_can_hold_more_than_a_block_and_what_others_say(ability):
     assert {name for name in OWN if ability in ENGINES[name].holds} == able
     for name, engine in ENGINES.items():
         for preset in engine.presets:
-            unequal = preset.stepping is not Stepping.FIXED
-            if ability not in engine.holds or (ability is Ability.FREE_BASE and unequal):
+            if ability not in engine.holds:
                 found = rocked(name, system=system, preset=preset.name)
                 assert (found.outcome, found.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
                 assert "is not built here for" in found.message
@@ -87,7 +85,6 @@ def test_who_can_hold_more_than_a_block_and_what_others_say(ability):
         ({"frames": ("base",)}, {"frame": "world"}, "'world'"),
         ({"geometries": ("box",)}, {"settings": {"geometry": "hull"}}, "'hull'"),
         ({"spatial": False}, {"settings": {"planar": False}}, "plane"),
-        ({}, {"system": ABLE[Ability.FREE_BASE][0], "preset": "fixed", "frame": "base"}, "'base'"),
         (
             {},
             {"system": SlidingBlock(**SIZE, friction=0.2), "preset": "landing"},

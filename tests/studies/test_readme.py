@@ -61,8 +61,11 @@ def test_the_scenes_of_the_readme_follow_their_tables(tmp_path):
     copy = tmp_path / readme.PUBLISHED
     shutil.copytree(PUBLISHED, copy)
     cells = cells_of(copy, "Drake")
-    assert "3.8 %<br>→ 9.4·10⁻⁵" in cells and len(cells) == 6
-    assert "–" in cells_of(copy, "Newton")
+    assert "3.8 %<br>→ 9.4·10⁻⁵" in cells and len(cells) == 5
+    path = copy / "scenes" / "slide.csv"
+    rows = read_table(path)
+    rows[~rows["source"].str.startswith("newton")].to_csv(path, index=False, na_rep="nan")
+    assert cells_of(copy, "Newton")[-1] == "–"
     path = copy / "scenes" / "frame.csv"
     rows = read_table(path)
     mine = rows["source"] == "drake:naive"

@@ -160,7 +160,7 @@ export CASE --out DIR --engine mujoco --scene slide --friction 0.2 --tilt 0.5 | 
 animate CASE --out film.gif --scene slide --friction 0.2 --tilt 0.1 | only where something rocks
 animate CASE --out film.gif --scene frame --load 2 --dt 0.001 --sources mujoco | it must come with
 compare CASE --load 2 | --load is 2.0; it may be given only with --scene frame
-animate --results results --mass-ratio 0.3 --out film.gif | --mass-ratio is 0.3 | without --results
+animate --results results --load 2 --out film.gif | --load is 2.0 | without --results
 animate CASE --results results --out film.gif | --width | --results
 animate --results results --out film.gif | --results | sweep.csv
 animate --results results --tilt 0.5 --degrees --out film.gif | --tilt | --degrees | --results

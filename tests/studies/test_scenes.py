@@ -189,11 +189,10 @@ def test_each_scene_has_its_pictures():
 def test_the_worst_cases_come_first_with_the_commands_that_ask_them(capsys):
     lines = again(PUBLISHED / "scenes")
     assert list(lines["scene"].unique()) == list(SCENES)
-    frames, slides, carts = (lines[lines["scene"] == name] for name in SCENES)
+    frames, slides = (lines[lines["scene"] == name] for name in SCENES)
     assert frames.iloc[0][["source", "outcome"]].to_list() == ["pymunk:naive", "overturned"]
     assert frames["error"].dropna().abs().is_monotonic_decreasing
     assert (slides["compare"] == "no option asks for its launch").any()
-    assert (carts["export"].fillna("") == "").all()
     for row in (frames.iloc[0], slides[slides["source"] == "pymunk:naive"].iloc[0]):
         assert run([*row["compare"].split()[1:], "--json"]) == 0
         _, found = map(json.loads, capsys.readouterr().out.splitlines())
@@ -231,15 +230,15 @@ def test_equal_steps_are_shifted_by_parts_of_a_step():
     """The first impact falls a quarter of a step later in each: step (1 + k step / 4 t), t its
     time."""
     asked = Job(labels={}, block=FRAME, motion=PULSE, source="pymunk:fixed")
-    jobs = list(placed(asked, 4, 1.0, "phase"))
+    jobs = list(placed(asked, 4, 1.0))
     impact = simulate(FRAME, PULSE).impacts[0].time * FRAME.p
     places = [impact / job.options["step"] % 1.0 for job in jobs]
     shifts = [(places[0] - place) % 1.0 for place in places]
     assert shifts == pytest.approx([0.0, 0.25, 0.5, 0.75], abs=1e-3)
     assert [job.labels["phase"] for job in jobs] == [0, 1, 2, 3]
     for source in ("mujoco:landing", "exact"):
-        (once,) = placed(replace(asked, source=source), 4, 1.0, "phase")
-        assert once.options == {} and not list(placed(replace(asked, source=source), 4, 2.0, ""))
+        (once,) = placed(replace(asked, source=source), 4, 1.0)
+        assert once.options == {} and not list(placed(replace(asked, source=source), 4, 2.0))
 
 
 def test_extreme_frames_and_one_in_other_steps_are_asked_beside_the_usual_ones():
