@@ -30,9 +30,6 @@ It holds
   (`engines.parts.script.filled`), so that both are one;
 - where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
   the bit what ``step`` and ``state`` give (`Scene.compiled`);
-- where it can take the equal steps of many scenes at once, ``batch``
-  (`engines.declaration.BatchEngine`): what each scene's own run gives, and where it has no other,
-  its ``build`` too;
 - where it can hold what ``build`` does not, as bodies that rest on others, what builds that, a line
   each in ``builders``, on which no row of another scene depends;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library

@@ -8,14 +8,13 @@ from dataclasses import dataclass, field, replace
 from importlib.metadata import Distribution
 from typing import Any
 
-from analytic.motion import FloatArray
 from engines.disclosure import Citation, Deviation, Help
 from engines.layouts import Ability, System
 from engines.parts.factors import Factor, Rule
 from engines.parts.script import Script
 from engines.parts.settings import largest
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
-from engines.world import REST_FACTOR, ROUNDINGS, Resolution, World, Worlds
+from engines.world import REST_FACTOR, ROUNDINGS, Resolution, World
 
 Builder = Callable[[Any, Any, float], Any]
 """``(scene, settings, dt_s)`` -> the built scene, in the ordinary steps dt_s [s]."""
@@ -343,33 +342,3 @@ class Engine:
         if scene.settings.get("planar") is False and not self.spatial:
             return f"{self.title} knows the plane alone"
         return ""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BatchEngine(Engine):
-    """An engine that can also take the equal steps of many scenes at once.
-
-    What a batch answers is what `build` would for each of its scenes, which are of one preset and
-    the same settings, frame and contacts; see `engines.run.batch`.
-
-    Attributes
-    ----------
-    batch : callable
-        ``(scenes, settings, dt_s) -> Worlds``: builds scenes, each in the ordinary steps dt_s [s]
-        of its own, an array (worlds,). Where an engine has nothing else, its `build` is
-        ``partial(engines.run.batch.alone, batch)``.
-    most_worlds : int
-        How many at most.
-    unmoved : tuple of str
-        Presets that hold no base that moves in the world.
-    """
-
-    batch: Callable[[Sequence[Scene], Any, FloatArray], Worlds]
-    most_worlds: int = 1024
-    unmoved: tuple[str, ...] = ()
-
-    def lacks(self, scene: Scene, preset: Preset) -> str:
-        """Say what of a scene a preset of the engine cannot do, or return an empty string."""
-        if preset.name in self.unmoved and preset.posed(scene).frame == "world":
-            return f"{self.name}:{preset.name} is not built here for a base that moves in the world"
-        return Engine.lacks(self, scene, preset)

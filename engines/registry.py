@@ -28,8 +28,6 @@ OWN = {
     "drake": "engines.drake:ENGINE",
     "newton": "engines.newton:ENGINE",
     "physx": "engines.physx:ENGINE",
-    "warp": "engines.warp:ENGINE",
-    "mjx": "engines.mjx:ENGINE",
 }
 """Name of an engine -> where its declaration stands."""
 

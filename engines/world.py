@@ -4,9 +4,6 @@ import enum
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from analytic.motion import FloatArray
 
 
@@ -175,43 +172,3 @@ class SelfSteppingWorld(World, Protocol):
 
     def advance(self, end_s: float) -> int:
         """Advance to a time [s], the base moving as the scene says; return the steps taken."""
-
-
-class Worlds(Protocol):
-    """Built scenes that take equal steps side by side; each is as a `World` says.
-
-    An attribute ``lag_m``, where there is one, is an array (worlds, steps): the distance [m] of a
-    base that moves from where it should have been, at the end of each of the last steps.
-    """
-
-    @property
-    def moment(self) -> Moment:
-        """At which moment of a step the velocities of a state hold."""
-
-    @property
-    def driver(self) -> str:
-        """What takes the steps, and on what."""
-
-    def advance(self, steps: Step, going: NDArray[np.bool_]) -> FloatArray:
-        """Take some steps.
-
-        Parameters
-        ----------
-        steps : Step of arrays (worlds, steps)
-            What each world is given in each step; phase is `ContactPhase.SWING` and side 0 in all.
-        going : array (worlds,)
-            Whether a world is still looked at. What another one does is not, and it is given the
-            steps that it was given before.
-
-        Returns
-        -------
-        array (worlds, steps, bodies, 4)
-            Every body's `Pose` at the end of each step; nan from the step on in which a world
-            fails.
-        """
-
-    def fault(self, world: int) -> str:
-        """Say what the engine knows to have gone wrong in a world, or return an empty string."""
-
-    def close(self) -> None:
-        """Release the engine's memory."""

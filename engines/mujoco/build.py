@@ -7,7 +7,6 @@ from typing import Any
 from engines.mujoco.contact import notice, prepare, read
 from engines.mujoco.contact_state import ContactState, Forces, arrays_of, begin_contact
 from engines.mujoco.model import OPTIONS, coordinates, impedance_of, model_xml
-from engines.mujoco.models import given_back, taken
 from engines.mujoco.settings import (
     MujocoSettings,
     kept,
@@ -35,8 +34,8 @@ class MujocoWorld:
         self._s = s = settings
         self._mj = import_module("mujoco")
         self.moment = Moment.END if s.integrator == "RK4" else Moment.MIDDLE
-        self._built = taken(self._mj, model_xml(scene, s, dt_s))
-        self._model, self._data = self._built.model, self._built.data
+        self._model = self._mj.MjModel.from_xml_string(model_xml(scene, s, dt_s))
+        self._data = self._mj.MjData(self._model)
         self._option = self._model.opt
         self._fault = self._read_back(scene, dt_s)
         if not all(body.at.at_rest for body in scene.bodies):
@@ -89,9 +88,8 @@ class MujocoWorld:
         return disagreement({"time": (self._held.time, self._data.time)})
 
     def close(self) -> None:
-        """Give warnings back to the library, and leave the model to the next run."""
+        """Give warnings back to the library."""
         self._mj.set_mju_user_warning(None)
-        given_back(self._mj, self._built)
 
     def _read_back(self, scene: Scene, dt_s: float) -> str:
         s, model = self._s, self._model

@@ -10,6 +10,9 @@ from pathlib import Path
 
 from engines import ENGINES
 
+OTHERS = {"mjx": ("MJX", "mujoco.mjx"), "warp": ("MuJoCo Warp", "mujoco_warp")}
+"""Libraries that are no engine here -> what they are called, and the module to import."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trouble:
@@ -17,8 +20,8 @@ class Trouble:
 
     Attributes
     ----------
-    engine, library : str
-        Name of the engine, and of the module that the script imports.
+    engine, called, library : str
+        Name of the engine, what a reader sees, and the module that the script imports.
     script : str
         Name of the file.
     title, mechanism, kind : str
@@ -26,6 +29,7 @@ class Trouble:
     """
 
     engine: str
+    called: str
     library: str
     script: str
     title: str
@@ -35,10 +39,12 @@ class Trouble:
 
 def _read(path: Path) -> Trouble:
     engine = path.name.partition("_")[0]
+    called, library = OTHERS.get(engine) or (ENGINES[engine].title, ENGINES[engine].library)
     title, mechanism, kind = str(ast.get_docstring(ast.parse(path.read_text()))).split("\n\n")
     return Trouble(
         engine=engine,
-        library=ENGINES[engine].library,
+        called=called,
+        library=library,
         script=path.name,
         title=title,
         mechanism=" ".join(mechanism.split()),

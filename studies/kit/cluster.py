@@ -20,7 +20,6 @@ from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
-from itertools import chain
 from queue import Empty, SimpleQueue
 from threading import Lock
 from typing import TYPE_CHECKING, Any
@@ -29,7 +28,7 @@ from analytic.response import Response
 from engines.registry import OWN
 from studies.kit import provenance
 from studies.kit.arguments import BadInputError
-from studies.kit.executors import Answers, Ask, Local, batches
+from studies.kit.executors import Answers, Ask, Local
 from studies.kit.fingerprint import everything
 from studies.kit.jobs import Job, ask
 from studies.kit.pool import Pool
@@ -75,10 +74,8 @@ def unfit(expected: dict[str, str]) -> str:
     return ""
 
 
-def work(
-    expected: dict[str, str], jobs: Sequence[Job], ask: Ask, time_limit_s: float
-) -> list[Response]:
-    """Run jobs on this worker, as `Local` does on a machine.
+def work(expected: dict[str, str], job: Job, ask: Ask, time_limit_s: float) -> Response:
+    """Run a job on this worker, as `Local` does on a machine.
 
     Raises
     ------
@@ -92,10 +89,10 @@ def work(
     with _starting:
         pool = _processes_of(get_worker())
     try:
-        answers = dict(Local(1, time_limit_s, ask)(jobs, pool))
+        ((_, answer),) = Local(1, time_limit_s, ask)([job], pool)
     except CancelledError:  # this worker is closing
         raise Reschedule from None
-    return [answers[number] for number in range(len(jobs))]
+    return answer
 
 
 _starting = Lock()
@@ -162,28 +159,17 @@ class Cluster:
         """Run the jobs."""
         if not jobs:
             return
-        ended: SimpleQueue[Future[list[Response]]] = SimpleQueue()
+        ended: SimpleQueue[Future[Response]] = SimpleQueue()
         with self._client() as client:
             executor = client.get_executor(pure=False)
-            parts: dict[Future[list[Response]], list[int]] = {}
-            for part in self._parts(client, dict(enumerate(jobs))):
-                asked = [jobs[number] for number in part]
-                task = executor.submit(work, fitness(), asked, self.ask, self.time_limit_s)
-                parts[task] = part
+            numbers: dict[Future[Response], int] = {}
+            for number, job in enumerate(jobs):
+                task = executor.submit(work, fitness(), job, self.ask, self.time_limit_s)
+                numbers[task] = number
                 task.add_done_callback(ended.put)
-            while parts:
+            while numbers:
                 task = self._next(client, ended)
-                part = parts.pop(task)
-                yield from zip(part, self._answers(client, task, len(part)), strict=True)
-
-    def _parts(self, client: "Client", jobs: dict[int, Job]) -> list[list[int]]:
-        """Return the numbers of jobs that one worker is given at a time."""
-        together: list[list[int]] = []
-        if self.ask is ask and batches(jobs, 1):
-            threads = sum(self._answer(client, client.nthreads).values())
-            together = batches(jobs, max(threads, 1))
-        taken = set(chain.from_iterable(together))
-        return together + [[number] for number in jobs if number not in taken]
+                yield numbers.pop(task), self._response(client, task)
 
     @contextmanager
     def _client(self) -> Iterator["Client"]:
@@ -237,9 +223,7 @@ class Cluster:
             pass
         raise self._gone()
 
-    def _next(
-        self, client: "Client", ended: "SimpleQueue[Future[list[Response]]]"
-    ) -> "Future[list[Response]]":
+    def _next(self, client: "Client", ended: "SimpleQueue[Future[Response]]") -> "Future[Response]":
         """Wait for the next job that ends; raise ClusterError when nobody is left to end one."""
         alone_since = time.monotonic()
         while True:
@@ -250,10 +234,8 @@ class Cluster:
             elif time.monotonic() - alone_since > PATIENCE_S:
                 raise self._error("its workers have all gone; start another one")
 
-    def _answers(
-        self, client: "Client", task: "Future[list[Response]]", count: int
-    ) -> list[Response]:
-        """Return the responses of a part, or of each of its jobs the failure as which it ended."""
+    def _response(self, client: "Client", task: "Future[Response]") -> Response:
+        """Return the response of a job, or the failure as which it ended."""
         from distributed import KilledWorker
 
         try:
@@ -261,11 +243,11 @@ class Cluster:
         except RefusedError as error:
             raise self._error(str(error)) from None
         except KilledWorker:
-            return [Response.failure("every worker that ran this case died")] * count
+            return Response.failure("every worker that ran this case died")
         except (Exception, CancelledError) as error:
             if isinstance(error, CancelledError) or client.status != "running":
                 raise self._gone() from None
-            return [Response.failure(one_line(error))] * count
+            return Response.failure(one_line(error))
 
     def _error(self, problem: str) -> ClusterError:
         return ClusterError(self.address, problem)

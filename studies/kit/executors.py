@@ -1,86 +1,28 @@
 """Where jobs are run: on the machine at hand, or on a cluster that is named.
 
-In processes of their own, where engines are concerned, and many at once where an engine can answer
-so: which jobs make up a batch, how a process asks about it, and what came of each.
+In processes of their own, where engines are concerned: how a process asks, and what came of it.
 """
 
-import math
 import sys
-from collections.abc import Callable, Generator, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import CancelledError, Future, as_completed
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, TypeAlias
 
 from analytic.kernels.compiled import Kernel, compile_all
 from analytic.kernels.kept import are_compiled
 from analytic.response import Reason, Response
 from engines import ENGINES
-from engines.declaration import BatchEngine
 from engines.parts.compiled import PACKAGE
-from engines.run.batch import alike, run_together
 from engines.run.monitor import compile_monitor
-from engines.scene import Scene
 from studies.kit.jobs import Job, ask, short
 from studies.kit.pool import MEMORY_BYTES, OvertimeError, Pool, StartError, TaskError
 from studies.kit.refusing import one_line, say
-from studies.sources.registry import Source, run_engine, scene_of
+from studies.sources.registry import Source
 
 Ask: TypeAlias = Callable[[Job, Source], Response]
 """How a job is put to its source."""
-
-
-def batches(jobs: Mapping[int, Job], workers: int) -> list[list[int]]:
-    """Return the numbers of the jobs that are answered at once, two or more a batch.
-
-    They share their source and what else is `alike`. Each worker gets a part of every such group,
-    as large as another's, so that none waits for long; an engine may want smaller ones.
-
-    Parameters
-    ----------
-    jobs : mapping
-        Number -> job.
-    workers : int
-        Processes that share the batches, 1 or more.
-
-    Returns
-    -------
-    list of list of int
-        A number stands in one batch at most; what stands in none is to be asked by itself.
-    """
-    groups: dict[tuple[str, Hashable], list[int]] = {}
-    for number, job in jobs.items():
-        scene = _scene(job)
-        common = None if scene is None else alike(job.asked.declared, scene)
-        if common is not None:
-            groups.setdefault((job.source, common), []).append(number)
-    parts: list[list[int]] = []
-    for numbers in groups.values():
-        engine = jobs[numbers[0]].asked.declared
-        most = engine.most_worlds if isinstance(engine, BatchEngine) else 1
-        count = workers * math.ceil(len(numbers) / (workers * most))
-        parts += [numbers[first::count] for first in range(count)]
-    return [part for part in parts if len(part) > 1]
-
-
-def _ask_together(jobs: Sequence[Job]) -> list[Response]:
-    """Put the jobs of a batch to their source, in a process of its own."""
-    compile_all()
-    scenes = [scene for job in jobs if (scene := _scene(job)) is not None]
-    return run_together(jobs[0].asked.engine, scenes)
-
-
-def _scene(job: Job) -> Scene | None:
-    """Return the scene that a job puts to an engine that batches; None for any other job."""
-    call = job.asked.call
-    if not isinstance(call, partial) or call.func is not run_engine:
-        return None
-    if not isinstance(ENGINES.get(job.asked.engine), BatchEngine):
-        return None
-    preset = call.keywords["preset"]
-    posed = {"duration": job.duration, "times": job.times, **job.options}
-    return scene_of(job.block, job.motion, preset, **posed)
 
 
 COMPILING_S = 1800.0
@@ -159,8 +101,7 @@ class Local:
     """The machine at hand: models and solvers in this process, engines in processes of their own.
 
     A compiled solver cannot be stopped from within its process: a long solve is treated as an
-    engine's. Jobs that an engine can answer at once are, where they are asked as `ask` does; of a
-    batch that has no answer each is asked by itself, so that the failure is that of its own row.
+    engine's.
 
     Attributes
     ----------
@@ -214,30 +155,12 @@ class Local:
             if Kernel.tell is not None and not are_compiled(PACKAGE):
                 Kernel.tell("compiling what engines need, once: some 10 to 40 s")
             _compile_ahead(pool, self.ask, jobs.values())
-        pending = dict(jobs)
         try:
-            if many and self.ask is ask:
-                for number, response in self._in_batches(pool, jobs):
-                    del pending[number]
-                    yield number, response
             tasks = {
                 pool.schedule(_ask_apart, (self.ask, job, many), self.time_limit_s): number
-                for number, job in pending.items()
+                for number, job in jobs.items()
             }
             for task in as_completed(tasks):
                 yield tasks[task], _outcome_of(task, self.time_limit_s)
         except StartError as error:
             raise OSError(f"a process could not be started ({error})") from error
-
-    def _in_batches(self, pool: Pool, jobs: Mapping[int, Job]) -> Answers:
-        """Run what can be run at once, each batch as long as its jobs may take one by one."""
-        tasks = {}
-        for numbers in batches(jobs, self.workers):
-            limit_s = self.time_limit_s * len(numbers)
-            task = pool.schedule(_ask_together, ([jobs[n] for n in numbers],), limit_s)
-            tasks[task] = numbers
-        for task in as_completed(tasks):
-            answers: list[Response] = []
-            with suppress(TaskError):
-                answers = task.result()
-            yield from zip(tasks[task], answers, strict=False)

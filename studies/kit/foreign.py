@@ -13,7 +13,7 @@ from operator import attrgetter
 from typing import Any
 
 from engines import ENGINES, registry
-from engines.declaration import BatchEngine, Engine, Preset
+from engines.declaration import Engine, Preset
 from engines.parts.settings import check
 from engines.registry import UnloadableError
 from studies.kit.fingerprint import PACKAGES, Name, files_elsewhere, names_of
@@ -106,9 +106,8 @@ def _declared_here(name: str) -> tuple[Engine, dict[str, str]]:
 
 
 def _plain(engine: Engine) -> Engine:
-    kind = BatchEngine if isinstance(engine, BatchEngine) else Engine
-    said = {item.name: getattr(engine, item.name) for item in fields(kind)}
-    for name in {"build", "script", "spring", "batch"} & said.keys():
+    said = {item.name: getattr(engine, item.name) for item in fields(Engine)}
+    for name in ("build", "script", "spring"):
         said[name] = said[name] and _call(engine, said[name], name)
     said["builders"] = _calls(engine, engine.builders, "builders")
     said["own_step"] = ""  # it would be imported
@@ -120,7 +119,7 @@ def _plain(engine: Engine) -> Engine:
         )
         for number, preset in enumerate(engine.presets)
     )
-    return kind(**said)
+    return Engine(**said)
 
 
 def _call(engine: Engine, call: Callable[..., Any], *path: Any) -> Call:

@@ -16,7 +16,6 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from engines.declaration import BatchEngine
 from engines.layouts import Ability
 from studies.kit.fingerprint import ROOT, Name, Reached, name_of, names_of, reached
 from studies.kit.jobs import Job, plain
@@ -37,7 +36,7 @@ FOUND_BY_NAME: frozenset[Name] = frozenset(
 """Where sources, engines and records are looked up: what a row asks is a part of it, by itself."""
 
 ASIDE = frozenset(
-    {"core", "factors", "install", "most_worlds", "own_step", "rules", "script", "title"}
+    {"core", "factors", "install", "own_step", "rules", "script", "title"}
     | {"abilities", "build", "builders"}
 )
 """What an engine declares for readers, for what is no row of a journal, and by what is asked."""
@@ -90,8 +89,6 @@ class Makers:
             builder = engine.builder(asks_of(job.block), preset)
             parts = (type(engine), type(preset), type(preset.settings), builder, engine.spring)
             names = names.union(*(names_of(part) for part in parts if part))
-            if isinstance(engine, BatchEngine):
-                names.add(("engines.run.batch", "run_together"))
         return reached(names, self._root, cut=FOUND_BY_NAME)
 
     def of_tables(self, jobs: Iterable[Job], tabulate: Callable[..., Any]) -> dict[str, Any]:

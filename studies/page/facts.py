@@ -160,11 +160,6 @@ def _short(row: pd.Series[Any], say: Callable[[float], str]) -> str:
     return "<br>".join(words.replace(" ", "\N{NO-BREAK SPACE}") for words in parts)
 
 
-def lines_in(published: Path, folder: str, name: str) -> list[dict[Any, Any]]:
-    """Return the rows of a published table; none where there is none."""
-    return table_in(published / folder, name).to_dict("records")
-
-
 def models(published: Path) -> dict[str, str]:
     """Return which outcomes of the paper's cases each linearization gets wrong."""
     lines = linearized(whole(published / "sweep"))

@@ -21,7 +21,7 @@ from studies.kit.provenance import check, seal
 from studies.measures.costs import OUTDATED, STEPPED, cost_text
 from studies.measures.presets import in_words
 from studies.measures.published import dictionary
-from studies.measures.words import capital, duration, meant, out_of, part, per_cent
+from studies.measures.words import capital, duration, meant, part, per_cent
 from studies.measures.wrongness import WORDS
 from studies.page import engine_facts, facts, hero, scene_facts
 from studies.precision import COST
@@ -97,7 +97,7 @@ def pages(root: Path) -> dict[Path, str]:
     )
     said = (capital, duration, in_words, engine_facts.once, part, per_cent, row)
     environment.filters |= {function.__name__: function for function in said}
-    asked = (cost_text, engine_facts, facts, meant, out_of, scene_facts, table)
+    asked = (cost_text, engine_facts, facts, meant, scene_facts, table)
     environment.globals |= {each.__name__.rpartition(".")[2]: each for each in asked}
     environment.globals |= {
         "ENGINES": ENGINES,

@@ -44,9 +44,8 @@ COST = Study(
 
 Where the time of a step goes, and the price of a free body, a full box, a moving base, a recorded
 history, ... measured by putting them back, on the block and pulse of the paper's figure 5-b: of one
-thread, warm, the best of five or more, the scenes of an engine in turn. With --batches what it is
-worth to run many scenes at once, too.""",
-    tables=("shares.csv", "scenes.csv", "reference.csv", "batches.csv"),
+thread, warm, the best of five or more, the scenes of an engine in turn.""",
+    tables=("shares.csv", "scenes.csv", "reference.csv"),
     claims=("shares",),
     drawings={"cost": ("draw_scenes", "scenes")},
     others=("cost.txt", "cost.png"),

@@ -23,14 +23,13 @@ from studies.kit.arguments import Out
 from studies.kit.executors import COMPILING_S
 from studies.kit.naming import CORE, Engines
 from studies.kit.options import DEFAULT_RUNNING
-from studies.kit.plan import Plan, Tables, carry_out
+from studies.kit.plan import Plan, carry_out
 from studies.kit.pool import Pool
 from studies.kit.tables import table_in
 from studies.measures.costs import STEPPED
 from studies.measures.differences import posed_cases
 from studies.measures.words import duration, listed
 from studies.precision import COST
-from studies.precision.batches import batch_table
 from studies.precision.repeats import interleaved
 from studies.precision.shares import CASE, share_table
 
@@ -69,7 +68,6 @@ def command(
     out: Out,
     engines: Engines = CORE,
     quick: bool = False,
-    batches: bool = False,
 ) -> int:
     """Show what a scene costs, and what each thing that it leaves out would cost and change.
 
@@ -79,17 +77,8 @@ def command(
         Names of engines, without a preset.
     quick
         Shorter timing: a few seconds.
-    batches
-        What it is worth to run many scenes at once, too, with the engines that can.
     """
-
-    def tabulate(_: object) -> Tables:
-        found = measured(engines, quick)
-        if batches:
-            found["batches"] = batch_table(engines, quick, QUICK_BUDGET_S if quick else BUDGET_S)
-        return found
-
-    made = Plan(settings={"quick": quick}, tabulate=tabulate)
+    made = Plan(settings={"quick": quick}, tabulate=lambda _: measured(engines, quick))
     return carry_out(COST, made, out, DEFAULT_RUNNING, report)
 
 
@@ -216,10 +205,6 @@ def report(folder: Path) -> str:
         ),
         "What the exact solution leaves out": reference,
     }
-    asked_for = {
-        "batches": "Many scenes at once and one by one, in CPU time of a step of a world",
-    }
-    tables |= {title: table_in(folder, name) for name, title in asked_for.items()}
     return tell(COST, folder, tables)
 
 

@@ -289,19 +289,7 @@ DEFAULT_EFFORT = Effort()
 """Every source as finely as it sees fit."""
 
 
-def original_of(name: str) -> str:
-    """Return the engine whose models another one steps: its packages are among the other's."""
-    whole = set(ENGINES[name].packages)
-    known = ((other, set(engine.packages)) for other, engine in ENGINES.items())
-    return next((other for other, packages in known if packages and packages < whole), "")
-
-
-def ports() -> tuple[str, ...]:
-    """Return the names of the engines that are here and step another one's models."""
-    return tuple(filter(original_of, installed_engines()))
-
-
-GROUPS = {"core": core_engines, "engines": installed_engines, "ports": ports}
+GROUPS = {"core": core_engines, "engines": installed_engines}
 """Word -> the names of the engines for which it stands."""
 
 
@@ -317,11 +305,10 @@ def core_sources(*presets: str) -> tuple[str, ...]:
 def grouped(names: Iterable[str]) -> Iterator[str]:
     """Yield the names of sources with "engines:fixed" in place of all engines that have the preset.
 
-    Whether an engine is installed does not count, and those that step another one's models do not.
+    Whether an engine is installed does not count.
     """
-    known = [name for name in OWN if not original_of(name)]
-    groups = {"engines": known}
-    for name in known:
+    groups = {"engines": list(OWN)}
+    for name in OWN:
         for preset in ENGINES[name].presets:
             groups.setdefault(f"engines:{preset.name}", []).append(f"{name}:{preset.name}")
     left = list(names)

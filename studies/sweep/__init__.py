@@ -10,10 +10,9 @@ STUDY = Study(
     help="""The paper's sensitivity analysis, figures 6 to 9.
 
 240 cases a figure, which are 120 problems in two sizes that similarity makes alike, through every
-named source. Of engines that step another one's models, ports.csv sets each beside that one.
-Finished cases are stored at once: a run that was interrupted goes on where it stopped when the same
-command is given again.""",
-    tables=("sweep.csv", "summary.csv", "findings.csv", "ports.csv"),
+named source. Finished cases are stored at once: a run that was interrupted goes on where it stopped
+when the same command is given again.""",
+    tables=("sweep.csv", "summary.csv", "findings.csv"),
     chapters=(
         Chapter(
             question="Do the engines and the linearizations get the paper's cases right?",
@@ -38,20 +37,6 @@ command is given again.""",
                 "Figure 8 stands for all four, and no preset with a tuned contact and a fixed "
                 "step is asked."
             ),
-        ),
-        Chapter(
-            folder="ports",
-            question="Is it the same physics on MuJoCo's GPU code?",
-            tables=("summary.csv",),
-            quick=("--figure", "6", "--sources", "exact", "mujoco:naive", "ports:naive"),
-            full=(
-                *("--figure", "6", "--sources", "exact", "mujoco:naive"),
-                *("mujoco:naive-base-at-rest", "mujoco:fixed"),
-                # MJX takes an hour for as many steps of its tuned contact
-                *("ports:naive", "ports:naive-base-at-rest", "warp:fixed"),
-            ),
-            minutes=(0.1, 10.0),
-            weaker="Defaults alone are asked, and what is not installed is left out.",
         ),
     ),
     captions={

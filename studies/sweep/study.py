@@ -17,7 +17,7 @@ from studies.kit.jobs import Job
 from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, carry_out
-from studies.kit.tables import table_in, write_table
+from studies.kit.tables import write_table
 from studies.measures.again import WORST_AGAIN, asked_again, worst_again
 from studies.measures.claims import said_once, write_findings
 from studies.measures.differences import summarize, with_reference, worst_cases
@@ -28,10 +28,6 @@ from studies.measures.words import alike, between, capital, in_kinds, part
 from studies.measures.wrongness import KINDS
 from studies.sources.registry import Effort, core_sources, resolve
 from studies.sweep import STUDY
-from studies.sweep.ports import port_table, same_physics
-
-PORTED = "Beside the engine whose models it steps"
-"""Title of the table of `port_table`, where a folder has one."""
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", "onset-matched", *core_sources())
 
@@ -105,11 +101,8 @@ def report(folder: Path) -> str:
     table, found = summarize(compared), findings(compared)
     write_table(folder / "summary.csv", table)
     write_findings(folder, found)
-    if len(ported := port_table(rows)):
-        write_table(folder / "ports.csv", ported)
     tables = {
         "All figures": over_all(table),
-        **shown(folder),
         "The case where each source errs most": worst_cases(compared),
         WORST_AGAIN: worst_again(again(folder)),
         "The paper's conclusions": pd.DataFrame(
@@ -128,18 +121,9 @@ def again(folder: Path) -> pd.DataFrame:
     return asked_again(folder, worst_cases(compared), compared, Case)
 
 
-def shown(folder: Path) -> dict[str, pd.DataFrame]:
-    """Return a folder's table of those that step another engine's models, if it has one."""
-    return {PORTED: ported} if len(ported := table_in(folder, "ports")) else {}
-
-
 def finding(folder: Path) -> str:
-    """Say what each preset of the engines gets wrong, and how far peaks are off.
-
-    Of those that step another engine's models say how they answer beside it.
-    """
-    found = [same_physics(lines) for lines in shown(folder).values()]
-    return f"{capital(posed(read(folder)).words)}. {(found or [finding_of(whole(folder))])[0]}"
+    """Say what each preset of the engines gets wrong, and how far peaks are off."""
+    return f"{capital(posed(read(folder)).words)}. {finding_of(whole(folder))}"
 
 
 def read(folder: Path) -> pd.DataFrame:

@@ -62,7 +62,7 @@ def test_a_library_that_is_missing_is_a_row_that_says_how_to_install_it(name):
 
 ABLE = {
     Ability.SEVERAL: (SideBySide(block=BLOCK), {*OWN}),
-    Ability.STACKED: (RockingFrame(**SIZE, load=1.0), {*OWN} - {"warp", "mjx"}),
+    Ability.STACKED: (RockingFrame(**SIZE, load=1.0), {*OWN}),
 }
 """Ability -> a system that asks for it, and which of the project's own engines have it."""
 

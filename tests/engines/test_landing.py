@@ -35,9 +35,6 @@ def within(engine):
         "newton": (118, 3e-3, 2e-2),  # of first order in the step
         "physx": (48, 1e-3, 6e-3),  # by the noise of a contact, a rounding of its place
         "rapier": (96, roundings / 6.0, 10.0 * roundings),  # by one at an impact
-        # anywhere in whose equal steps an impact may fall, which is worth 2e-3 at most
-        "mjx": (96, 5e-5, 2e-3),
-        "warp": (96, 0.5 * roundings, 4.0 * roundings),
         "moreau": (96, 1e-4, 1e-3),
         **dict.fromkeys(core_engines(), (31, 1e-5, 2e-4)),
     }.get(engine, (96, 1e-5, 1e-4))

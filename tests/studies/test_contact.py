@@ -254,8 +254,8 @@ def test_what_errs_no_more_than_as_tuned_is_no_setting_that_matters():
 
 
 def test_of_frames_whoever_holds_none_is_refused(capsys, tmp_path):
-    asked = ["contact", "--scene", "frame", "--engines", "warp", "--out", tmp_path]
-    refused(capsys, asked, "--scene is 'frame'", "none of --engines", "warp")
+    asked = ["contact", "--scene", "frame", "--engines", "moreau", "--out", tmp_path]
+    refused(capsys, asked, "--scene is 'frame'", "none of --engines", "moreau")
 
 
 @pytest.mark.slow

@@ -7,14 +7,14 @@ import time
 from dataclasses import replace
 
 import pytest
-from declared import announced, equal_to
+from declared import equal_to
 
 from analytic.response import Outcome, Reason, Response
 from engines import ENGINES, Scene, core_engines, installed_engines
 from engines.declaration import Stepping
 from engines.run.drive import run
 from studies.measures.costs import LEAST_RUNS
-from studies.precision import batches, cost, shares
+from studies.precision import cost, shares
 from studies.precision.cost import (
     in_a_new_process,
     omissions,
@@ -112,28 +112,6 @@ def test_a_burst_of_other_work_slows_no_scene(monkeypatch):
     table = scene_table(["mujoco"], 10.0)
     assert table["wall_s"].tolist() == [1.0] * len(table)
     assert (table["runs"] >= LEAST_RUNS).all()
-
-
-@pytest.mark.slow
-def test_a_batch_is_held_against_its_scenes_one_by_one(monkeypatch):
-    with announced("looped", "rocking_batch:BRISK"):
-        table = batches.batch_table(["looped", "mujoco"], True, 0.0)
-        assert table["taken"].tolist() == [batches.AT_ONCE, batches.ONE_BY_ONE] * 2
-        assert not table["largest_change"].any()  # to the bit
-        assert not table["other_outcomes"].any()
-        assert (table["cpu_s"] > 0.0).all()
-
-        together = batches.run_together
-
-        def off(name, scenes):
-            first, *others = together(name, scenes)
-            larger = [replace(each, peak_ratio=1.25 * each.peak_ratio) for each in others]
-            return [replace(first, outcome=Outcome.FAILED), *larger]
-
-        monkeypatch.setattr(batches, "run_together", off)
-        at_once, _ = batches.measured("looped", "fixed", 4, 0.0)
-        assert at_once["other_outcomes"] == 1
-        assert at_once["largest_change"] == pytest.approx(0.25)
 
 
 def test_reference_is_timed_with_what_it_leaves_out():

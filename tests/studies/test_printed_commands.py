@@ -16,7 +16,7 @@ from studies.catalogue import CHAPTERS
 from studies.kit.app import make_app
 from studies.measures.published import PUBLISHED
 from studies.page import facts
-from studies.sources.registry import expanded, grouped, original_of, resolve
+from studies.sources.registry import expanded, grouped, resolve
 
 
 def commands(name):
@@ -64,7 +64,7 @@ def test_the_command_of_a_chapter_asks_who_answers_in_its_tables(place):
 
 def here(pairs):
     """Return those of models and of the published engines that are installed."""
-    known = {name for name in OF_ALL if ENGINES[name].installed} | MODELS.keys()
+    known = {name for name in OWN if ENGINES[name].installed} | MODELS.keys()
     return {pair for pair in pairs if pair[0] in known}
 
 
@@ -74,15 +74,11 @@ def used(name):
     return engine, resolve(name).preset or (ENGINES[engine].best.name if engine in ENGINES else "")
 
 
-OF_ALL = tuple(name for name in OWN if not original_of(name))
-
-
 def test_names_of_all_engines_with_a_preset_are_one_word():
-    fixed = [f"{name}:fixed" for name in OF_ALL]
+    fixed = [f"{name}:fixed" for name in OWN]
     assert [*grouped(["exact", *fixed, "mujoco"])] == ["exact", "engines:fixed", "mujoco"]
-    assert [*grouped([*OF_ALL, "rk4"])] == ["engines", "rk4"]
+    assert [*grouped([*OWN, "rk4"])] == ["engines", "rk4"]
     assert [*grouped(fixed[1:])] == fixed[1:]
-    assert [*grouped(["warp:fixed", *fixed])] == ["warp:fixed", "engines:fixed"]
 
 
 QUICK = ("symptoms", "advise", "export", "blocks", "compare")

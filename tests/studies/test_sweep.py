@@ -27,7 +27,6 @@ from studies.page import redraw
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES
 from studies.sweep import STUDY
 from studies.sweep import study as sweep
-from studies.sweep.ports import port_table, same_physics
 
 HERE = Path(__file__).parent
 MODELS_AND_SOLVERS = [name for name, its in SOURCES.items() if its.kind in ("model", "solver")]
@@ -145,33 +144,6 @@ def test_figures_are_drawn_from_the_csv_alone(swept, tmp_path):
     for path in drawn:
         assert path.read_bytes() == (folder / path.name).read_bytes()
         assert path.stat().st_size > 15_000
-
-
-def test_what_steps_another_engine_s_models_is_told_beside_it(tmp_path):
-    """Median and largest change are of the cases in which both rocked; the presets must agree."""
-    peaks = {"mujoco:naive": [0.2, 0.4, 0.5], "warp:naive": [0.2002, 0.3, math.inf]}
-    peaks |= {"warp:fixed": [0.2, 0.4, 0.5]}  # whose original was not asked
-    rows = pd.DataFrame(
-        [
-            {
-                **{"figure": 6, "aspect": 3, "width_m": 0.5, "omega_over_p": place, "steps": 100},
-                **{"source": source, "peak_ratio": peak},
-                "outcome": "rocked" if peak < 1.0 else "overturned",
-            }
-            for source, found in peaks.items()
-            for place, peak in enumerate(found)
-        ]
-    )
-    (line,) = port_table(rows).to_dict("records")
-    assert (line["source"], line["beside"]) == ("warp:naive", "mujoco:naive")
-    assert (line["cases"], line["other_outcomes"], line["world_steps"]) == (3, 1, 300)
-    assert line["largest_change"] == pytest.approx(0.25)
-    assert line["median_change"] == pytest.approx(0.5 * (0.001 + 0.25))
-    port_table(rows).to_csv(tmp_path / "ports.csv", index=False)
-    ((_, shown),) = sweep.shown(tmp_path).items()
-    said = "Beside mujoco with the same preset the outcome is another in 1 of 3 (warp)"
-    assert same_physics(shown).startswith(f"{said}; half of the peaks differ by up to 13 %")
-    assert port_table(rows[rows["source"] != "mujoco:naive"]).empty
 
 
 def test_a_rerun_computes_nothing(swept, whole):
