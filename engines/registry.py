@@ -32,14 +32,6 @@ OWN = {
 """Name of an engine -> where its declaration stands."""
 
 
-VARIANTS = {
-    f"newton-{solver}": f"engines.newton.others:{solver.upper().replace('-', '_')}"
-    for solver in ("featherstone", "mujoco", "semi-implicit", "steel")
-}
-"""Engines once more with another solver: found by their names, and in no list of engines; what a
-study tries on the one that is listed (`engines.parts.factors.Level.source`) are these."""
-
-
 elsewhere: Callable[[str], Engine] | None = None
 """Declares an engine of another package where its code must not be loaded in this process."""
 
@@ -52,7 +44,7 @@ class Engines(Mapping[str, Engine]):
     """Name -> declaration, read when an engine is first asked for; no library is imported."""
 
     def __getitem__(self, name: str) -> Engine:
-        return _declared(name, _place(name))
+        return _declared(name, _places()[name])
 
     def __iter__(self) -> Iterator[str]:
         return iter(_places())
@@ -70,11 +62,6 @@ def _places() -> dict[str, EntryPoint]:
     own = {name: EntryPoint(name, place, GROUP) for name, place in OWN.items()}
     others = {point.name: point for point in (*entry_points(group=GROUP), *_further())}
     return own | {name: others[name] for name in sorted(others.keys() - own.keys())}
-
-
-def _place(name: str) -> EntryPoint:
-    listed = _places()
-    return listed[name] if name in listed else EntryPoint(name, VARIANTS[name], GROUP)
 
 
 def _further() -> list[EntryPoint]:
@@ -171,7 +158,7 @@ def loaded(name: str) -> Engine:
     ValueError
         If what stands at its place is none, or one of another name.
     """
-    place = _place(name)
+    place = _places()[name]
     found = _found(name, place)
     if callable(found) and place in _further():
         return undeclared(name, found, place.module.partition(".")[0])

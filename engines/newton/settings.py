@@ -12,7 +12,6 @@ from engines.parts.factors import (
     DEFAULT,
     UNMOVED_BASE,
     Factor,
-    Level,
     Rule,
     factor,
     level,
@@ -129,17 +128,6 @@ TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)
 
 OVERDONE = "both corners correct all of a penetration that they share"
 
-OTHERS = tuple(
-    Level(name=name, settings={}, source=f"newton-{solver}:fixed")
-    for solver, name in {
-        "mujoco": "MuJoCo Warp",
-        "steel": "Steel",
-        "featherstone": "Featherstone",
-        "semi-implicit": "semi-implicit",
-    }.items()
-)
-"""Its other solvers that hold a block; see `engines.newton.others`."""
-
 FACTORS = (
     Factor(
         "solver",
@@ -147,7 +135,6 @@ FACTORS = (
         (
             level("XPBD, 50 iterations", BOTH, solver=XPBD, iterations=50),
             level("Kamino by PADMM", BOTH, solver="padmm", iterations=200),
-            *OTHERS,
         ),
     ),
     factor("relaxation", level("1", (DEFAULT,), relaxation=1.0), by_default=False),

@@ -36,9 +36,6 @@ class Level:
         Why it goes wrong without a word, where it does.
     scene : mapping
         Options of the scene.
-    source : str
-        Who is asked in place of the engine's preset, "engine:preset", where it is another one of
-        `engines.registry.VARIANTS`.
     """
 
     name: str
@@ -46,7 +43,6 @@ class Level:
     presets: tuple[str, ...] = (BEST,)
     trap: str = ""
     scene: Settings = field(default_factory=dict)
-    source: str = ""
 
 
 def level(name: str, presets: tuple[str, ...] = (BEST,), trap: str = "", **settings: Any) -> Level:

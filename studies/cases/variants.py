@@ -35,8 +35,6 @@ class Variant:
         Settings of the engine, and options of the `Scene`, that replace the preset's.
     trap : str
         Why it goes wrong without a word, where it does.
-    source : str
-        Who is asked: the engine's preset, but for another engine in its place.
     """
 
     engine: str
@@ -46,10 +44,11 @@ class Variant:
     settings: Mapping[str, Any] = field(default_factory=dict)
     scene: Mapping[str, Any] = field(default_factory=dict)
     trap: str = ""
-    source: str = ""
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "source", self.source or f"{self.engine}:{self.preset}")
+    @property
+    def source(self) -> str:
+        """Who is asked: the engine's preset."""
+        return f"{self.engine}:{self.preset}"
 
     @property
     def name(self) -> str:
@@ -136,5 +135,4 @@ def _levels(engine: str, preset: str, factor: Factor) -> Iterator[Variant]:
                 settings=item.settings,
                 scene=item.scene,
                 trap=item.trap,
-                source=item.source,
             )

@@ -17,7 +17,7 @@ from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
 from engines.layouts import Ability, System, layout_of
 from engines.parts.compiled import interpreted_first
-from engines.registry import OWN, VARIANTS, named
+from engines.registry import OWN, named
 from engines.registry import announce as announce_engine
 from engines.scene import Scene, one_of, perhaps
 from studies.sources.scipy_peers import solve_ivp_response
@@ -199,7 +199,7 @@ SOURCES: dict[str, Source] = {
         "solver", partial(integrate, method="average-acceleration"), stepping=True
     ),
     **{name.lower(): _peer(name) for name in ("RK45", "DOP853", "Radau", "LSODA")},
-    **{name: _engine(name, ENGINES[name].best.name) for name in (*ENGINES, *VARIANTS)},
+    **{name: _engine(name, ENGINES[name].best.name) for name in ENGINES},
 }
 """Every source; a new model or engine appears here by being registered in its own storey."""
 

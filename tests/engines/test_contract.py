@@ -16,13 +16,12 @@ from analytic.response import Outcome, Reason, Response
 from engines import ENGINES
 from engines.declaration import UNTUNED
 from engines.layouts import Ability, SideBySide
-from engines.registry import OWN, VARIANTS
+from engines.registry import OWN
 from engines.run.drive import build, run, simulate_world
 from engines.world import Pose
 from studies.cases.variants import variants
 from studies.kit.executors import Local
 from studies.kit.jobs import Job
-from studies.sources.registry import SOURCES
 
 SIZE = {"width": 0.5, "height": 1.5}
 
@@ -139,13 +138,6 @@ def test_what_an_engine_does_not_have_is_refused(engine):
 def test_an_engine_that_there_is_not_is_refused():
     with pytest.raises(ValueError, match="engine is 'ode'; it must be one of pybullet, mujoco"):
         rocked("ode")
-
-
-def test_the_other_solvers_are_variants_and_no_engines_of_a_list():
-    asked = {each.source.partition(":")[0] for each in variants("newton")}
-    assert asked == {"newton", *VARIANTS}
-    assert not {*ENGINES} & {*VARIANTS}
-    assert {*VARIANTS} <= {*SOURCES}
 
 
 def takes(engine, **options):

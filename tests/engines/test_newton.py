@@ -7,11 +7,10 @@ from uses import BLOCK, HERE, error, pulse, rocked, scene, take_a_step
 
 from analytic import simulate
 from analytic.block import RigidBlock
-from analytic.response import Outcome, Reason
+from analytic.response import Outcome
 from engines import ENGINES
 from engines.declaration import AT_REST
 from engines.newton import models as newton_models
-from engines.registry import VARIANTS
 from engines.run.drive import build, run
 
 pytestmark = pytest.mark.skipif("newton" not in HERE, reason="newton is not installed")
@@ -81,28 +80,3 @@ def test_what_naive_leaves_is_what_the_library_does_itself():
     assert (bare.iterations, bare.angular_damping) == (2, 0.0)
     assert newton.ModelBuilder.ShapeConfig().mu == ENGINES["newton"].presets[0].settings.friction
     world.close()
-
-
-OTHERS = [name for name in VARIANTS if name.startswith("newton-")]
-"""Its other solvers, each an engine that no list names."""
-
-
-def has_warp(name):
-    return name != "newton-mujoco" or ENGINES["warp"].installed
-
-
-@pytest.mark.parametrize("name", OTHERS)
-def test_another_solver_holds_the_block(name):
-    """Below g tan(alpha) nothing lifts; above, its peak is near the exact one at an ordinary step.
-
-    The same run after another one of the same model answers the same to the bit.
-    """
-    motion = pulse(1.3, 3.0, 1)
-    first, still, again = (rocked(name, it) for it in (motion, pulse(0.9, 1.0), motion))
-    if not has_warp(name):
-        assert first.reason is Reason.UNAVAILABLE
-        assert first.message.endswith("pip install 'rocking[newton,warp]'")
-        return
-    assert (first.outcome, still.outcome) == (Outcome.ROCKED, Outcome.AT_REST)
-    assert first.peak_ratio == pytest.approx(simulate(BLOCK, motion).peak_ratio, rel=0.03)
-    assert (again.peak_ratio, again.steps) == (first.peak_ratio, first.steps)

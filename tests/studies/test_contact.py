@@ -18,7 +18,6 @@ from engines.mujoco.settings import TUNED, MujocoSettings
 from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, LEFT_OUT, OWN_STEPS
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.settings import BulletSettings
-from engines.registry import VARIANTS as OTHERS
 from engines.run.drive import build, run
 from engines.run.monitor import Monitor
 from studies.contact.study import (
@@ -79,11 +78,9 @@ FIRST = {(v.engine, v.factor): v for v in reversed(VARIANTS)}.values()
 )
 def test_every_variant_answers(variant):
     """Builds, reads back what it set, and gives a response; only a declared trap may fail."""
-    engine, _, preset = variant.source.partition(":")
-    response = run(engine, scene(preset=preset, settings=variant.settings, **variant.scene))
-    if response.reason is Reason.UNAVAILABLE:
-        assert engine in OTHERS  # it may need another package than the engine that is listed
-    elif response.outcome is Outcome.FAILED:
+    asked = scene(preset=variant.preset, settings=variant.settings, **variant.scene)
+    response = run(variant.engine, asked)
+    if response.outcome is Outcome.FAILED:
         assert variant.trap and response.reason in LEFT, response.message  # no setting was refused
     elif response.outcome is Outcome.AT_REST:
         assert variant.trap  # it slid, and never rocked; steps this coarse may overturn a block
@@ -104,10 +101,8 @@ def test_a_variant_differs_from_its_preset():
     """What a variant sets is not what its preset sets already, or it would compare nothing."""
     for variant in VARIANTS:
         plain = ENGINES[variant.engine].preset(variant.preset).settings
-        asked, _, preset = variant.source.partition(":")
         if variant.factor and not variant.scene and variant.factor != OWN_STEPS:
-            used = ENGINES[asked].preset(preset).settings
-            assert scene(settings=variant.settings).choose(used) != plain, variant
+            assert scene(settings=variant.settings).choose(plain) != plain, variant
 
 
 @pytest.mark.parametrize(
