@@ -7,7 +7,7 @@ from studies import page
 from studies.catalogue import STUDIES
 from studies.kit import app, refusing, signals
 
-COMMANDS = (*STUDIES, page.REPORT, page.REDRAW, page.README)
+COMMANDS = (*STUDIES, page.REPORT, page.README)
 """Every command."""
 
 

@@ -10,10 +10,8 @@ from studies import (
     doctor,
     estimate,
     export,
-    free,
     histories,
     linearizations,
-    literature,
     overturning,
     precision,
     restitution,
@@ -29,8 +27,8 @@ from studies.kit.study import Chapter, Study
 
 STUDIES: tuple[Study, ...] = (
     *(advise.STUDY, compare.STUDY, blocks.STUDY, animate.STUDY, export.STUDY, sweep.STUDY),
-    *(defaults.STUDY, histories.STUDY, linearizations.STUDY, free.STUDY, scenes.STUDY),
-    *(literature.STUDY, validate.STUDY, advise.STEPS, estimate.STUDY),
+    *(defaults.STUDY, histories.STUDY, linearizations.STUDY, scenes.STUDY),
+    *(validate.STUDY, advise.STEPS, estimate.STUDY),
     *(precision.STUDY, precision.COST, contact.STUDY, symptoms.STUDY, restitution.STUDY),
     *(stability.STUDY, overturning.STUDY, validity.STUDY),
     *(score.STUDY, doctor.STUDY),

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 from studies.__main__ import run
+from studies.catalogue import STUDIES
 
 ROOT = Path(__file__).parents[1]
 PUBLISHED_PAGES = ("README.md", "engines.md", "scenes.md")
@@ -31,6 +32,14 @@ def refused(capsys, arguments, *parts):
     for part in parts:
         assert part in line
     return line
+
+
+def redrawn(name, folder):
+    """Draw a study's pictures from the tables of its folder alone; return the files."""
+    from studies.drawing.figures import save_all
+
+    (study,) = (study for study in STUDIES if study.name == name)
+    return save_all(study.pictures(folder), folder)
 
 
 def compared(capsys, *options):

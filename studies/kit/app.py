@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from studies.kit.study import Study
 
 
-RETIRED = ("ensemble", "harmonic", "throughput", "versions")
+RETIRED = ("ensemble", "free", "harmonic", "literature", "redraw", "throughput", "versions")
 """Commands that answer for one release that they are gone."""
 
 

@@ -15,8 +15,3 @@ README = Study(
     module="studies.page.readme",
     help="Write README.md and the pages of the published results from their tables.",
 )
-REDRAW = Study(
-    name="redraw",
-    module="studies.page.redraw",
-    help="Draw a results folder again, from its CSVs alone.",
-)

@@ -126,18 +126,6 @@ def frames(lines: pd.DataFrame) -> Iterator[tuple[str, str, str]]:
             yield ENGINES[engine].title, error_words(still), error_words(moved)
 
 
-def own_tests(published: Path) -> Iterator[list[str]]:
-    """Yield what tests of engines' authors pass, the exact number, and what is found here."""
-    lines = pd.read_csv(published / "literature" / "peers.csv").fillna({"source": ""})
-    for test, group in lines.groupby("test", sort=False):
-        line, low, high = group.iloc[0], group["low"].iloc[0], group["high"].iloc[0]
-        passes = f"{low:.5g} or more" if math.isinf(high) else f"{low:.5g} to {high:.5g}"
-        exact = f"{line['exact']:.5g}" + ("" if line["exact_passes"] else ", which fails")
-        found = group.loc[group["source"] != "", ["source", "found"]].to_numpy().tolist()
-        here = "<br>".join(f"`{source}` {value:.5g}" for source, value in found)
-        yield [str(test), line["quantity"], passes, exact, here or "–", line["says"]]
-
-
 def documented() -> Iterator[tuple[str, ...]]:
     """Yield what the documentation of each engine sets or recommends, and where it says so."""
     for name in OWN:

@@ -9,13 +9,13 @@ import matplotlib
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import redrawn
 from declared import equal_to
 from PIL import Image
 
 from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
 from engines import ENGINES, installed_engines
 from studies import respond
-from studies.__main__ import run
 from studies.cases.paper import Case
 from studies.catalogue import CHAPTERS
 from studies.kit.journal import rows_in
@@ -114,11 +114,12 @@ def test_edges_of_the_overturning_map_are_where_they_were():
 @pytest.mark.parametrize("name", sorted({chapter.folder for _, chapter in CHAPTERS}))
 def test_a_published_picture_is_what_its_tables_draw_today(name, tmp_path):
     folder = shutil.copytree(PUBLISHED / name, tmp_path / name)
+    study = next(study for study, chapter in CHAPTERS if chapter.folder == name)
     drawn = json.loads((folder / "provenance.json").read_text())["tools"]["matplotlib"]
     if drawn.split(".")[:2] != matplotlib.__version__.split(".")[:2]:
         pytest.skip("another matplotlib sets the same words elsewhere")
     then = {path.name: pixels(path) for path in folder.glob("*.png")}
-    assert run(["redraw", str(folder)]) == 0
+    redrawn(study.name, folder)
     for picture, before in then.items():
         now = pixels(folder / picture)
         assert now.shape == before.shape

@@ -37,7 +37,6 @@ BEGINNINGS = {
     "score": [("pybullet", "--out", "FOLDER", "--quick")],
     "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
     "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
-    "redraw": [("FOLDER",)],
     "doctor": [()],
     "readme": [()],
 }

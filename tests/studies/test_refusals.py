@@ -174,7 +174,6 @@ sweep --out ' ' | --out is empty | given
 report --out '	' | --out is empty | given
 report --out /dev/null | --out is '/dev/null' | folder
 cost --out /dev/null | --out is '/dev/null' | folder
-redraw DIR | FOLDER | DIR | sweep.csv
 animate CASE --out film.avi | --out | .gif
 animate CASE --out nowhere/film.gif | --out | folder
 animate CASE --out /dev/full/film.gif | --out | folder

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import refused
+from commanding import redrawn, refused
 from declared import held_to
 from given import BLOCK, FULL_SINE
 
@@ -19,7 +19,6 @@ from studies.cases.paper import HISTORIES, sweep_cases
 from studies.catalogue import STUDIES
 from studies.histories import study as histories
 from studies.kit.journal import FolderError
-from studies.page import redraw
 from studies.sources.registry import SOURCES, Source, UnknownSourceError, resolve
 
 HERE = installed_engines()
@@ -115,7 +114,7 @@ def test_the_histories_are_drawn_and_judged(tmp_path, capsys):
     for path, before in drawn.items():
         assert len(before) > 30_000
         path.unlink()
-    assert redraw.command(tmp_path) == 0
+    assert set(redrawn("histories", tmp_path)) == set(drawn)
     assert {path: path.read_bytes() for path in drawn} == drawn
 
 
@@ -168,7 +167,7 @@ def test_a_study_is_told_as_it_is_kept_and_drawn_again_from_its_tables(asked, tm
     for path, picture in drawn.items():
         assert len(picture) > 4_000
         path.unlink()
-    assert run(["redraw", str(tmp_path)]) == 0
+    redrawn(name, tmp_path)
     assert {path: path.read_bytes() for path in tmp_path.glob("*.png")} == drawn != {}
 
 

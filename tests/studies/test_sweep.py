@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from commanding import redrawn
 
 from analytic import simulate
 from engines import ENGINES, core_engines
@@ -23,7 +24,6 @@ from studies.kit.runner import run_jobs
 from studies.measures.claims import said_once
 from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.measures.findings import findings
-from studies.page import redraw
 from studies.sources.registry import DEFAULT_EFFORT, SOURCES
 from studies.sweep import STUDY
 from studies.sweep import study as sweep
@@ -138,8 +138,7 @@ def test_figures_are_drawn_from_the_csv_alone(swept, tmp_path):
     folder = swept[0]
     for name in ("sweep.csv", "provenance.json"):
         (tmp_path / name).write_bytes((folder / name).read_bytes())
-    assert redraw.command(tmp_path) == 0
-    drawn = sorted(tmp_path.glob("*.png"))
+    drawn = sorted(redrawn("sweep", tmp_path))
     assert [path.name for path in drawn] == [f"figure-{n}.png" for n in (6, 7, 8, 9)]
     for path in drawn:
         assert path.read_bytes() == (folder / path.name).read_bytes()
