@@ -10,7 +10,6 @@ from typing import Any, TypeVar
 
 from analytic.checks import finite, positive, sized
 from analytic.motion import SEGMENT_COLUMNS, Motion
-from engines.hints import TRUE, Hints
 from engines.layouts import Body, Layout, System, layout_of
 
 FRAMES = ("base", "world")
@@ -69,9 +68,6 @@ class Scene:
         Number of steps after which a run is given up.
     settings : mapping, optional
         Settings of the engine by name that replace those of the preset.
-    hints : Hints, optional
-        What the steps of the preset "landing" expect; the truth by default. False ones are for
-        measuring what the steps lean on.
     compiled : bool, optional
         Step from a compiled loop where the engine has one; else each step from Python. Both give
         the same response to the bit.
@@ -105,7 +101,6 @@ class Scene:
     time_limit_s: float | None = None
     max_steps: int = 5_000_000
     settings: Mapping[str, Any] = field(default_factory=dict)
-    hints: Hints = TRUE
     compiled: bool = True
 
     def __post_init__(self) -> None:

@@ -145,7 +145,7 @@ def begin_landing(
         What the engine's numbers tell apart: nothing finer is asked of it.
     """
     block = scene.system
-    fall = scene.hints.fall * block.p**2 * math.sin(block.alpha)
+    fall = block.p**2 * math.sin(block.alpha)
     # a swing that rises by no more than the engine's numbers tell apart
     unseen = 2.0 * math.sqrt(2.0 * resolution.length_m / (block.width * fall))
     fill(

@@ -75,8 +75,7 @@ class Times(State):
 def timetable(scene: Scene, dt_s: float, resolved_s: float = 0.0) -> tuple[FloatArray, FloatArray]:
     """Return the stops [s] that a step must not pass, and the loads, a row each.
 
-    A load begins where abs(u_g'') exceeds g tan(alpha) (EQUATIONS.md, "From (1) and (2)"), or the
-    part of it that the hints of the scene say.
+    A load begins where abs(u_g'') exceeds g tan(alpha) (EQUATIONS.md, "From (1) and (2)").
 
     Parameters
     ----------
@@ -87,10 +86,8 @@ def timetable(scene: Scene, dt_s: float, resolved_s: float = 0.0) -> tuple[Float
     resolved_s : float, optional
         Times [s] closer than this are the same to the engine.
     """
-    block, hints = scene.system, scene.hints
-    loads = loads_of(scene.motion, hints.onset * block.gravity * math.tan(block.alpha))
-    if hints.swapped:
-        loads = [load._replace(side=-load.side) for load in loads]
+    block = scene.system
+    loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha))
     ends = () if scene.duration is None else (scene.duration,)
     stops = {*scene.motion.breakpoints, *ends, *(t for load in loads for t in load[:2])}
     same = same_time(dt_s, resolved_s)

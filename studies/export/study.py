@@ -30,7 +30,6 @@ from studies.kit.posing import DEFAULT_EXCITATION, Excitation, refuse_endless
 from studies.kit.provenance import project_version, version_of
 from studies.kit.runner import exit_code, run_jobs
 from studies.kit.standing import ONE_BLOCK, Height, Standing, Width
-from studies.measures.again import built_by_script
 from studies.measures.words import listed
 
 
@@ -121,7 +120,8 @@ def command(
 def unwritten(engine: Engine, preset: Preset, scene: Scene) -> str:
     """Say what of a scene is not written out with a preset, or return an empty string."""
     asks = scene.layout.asks
-    if (lacking := engine.lacks(scene, preset)) or built_by_script(engine, preset, asks):
+    builder = inspect.unwrap(engine.builder(asks, preset))
+    if (lacking := engine.lacks(scene, preset)) or builder is engine.build:
         return lacking
     return f"{engine.title} is not built here for {asks[0].value}"
 

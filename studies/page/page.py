@@ -22,11 +22,11 @@ from studies.drawing.figures import DPI, lay_out
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import SMALL, read_table
-from studies.measures.again import WORST_AGAIN, written_out
 from studies.measures.presets import in_words
 from studies.measures.words import capital, in_kinds, meant, part
 from studies.measures.wrongness import KINDS
 from studies.page.facts import asked, presets, shared, statements_of
+from studies.sources.registry import resolve
 from studies.sweep.study import verdict
 
 GOOD, BAD = 1e-3, 0.1
@@ -154,12 +154,10 @@ def _address(kind: str, image: io.BytesIO) -> str:
 
 
 def _tables(chapter: Chapter, folder: Path, study: Any) -> Iterator[tuple[str, pd.DataFrame]]:
-    """Yield a chapter's tables, and of a study that has them others and its worst cases."""
+    """Yield a chapter's tables, and others of a study that has them."""
     yield from ((name, read_table(folder / name)) for name in chapter.tables)
     if hasattr(study, "shown"):
         yield from study.shown(folder).items()
-    if hasattr(study, "again"):
-        yield WORST_AGAIN, study.again(folder)
 
 
 def table(rows: pd.DataFrame) -> tuple[list[str], list[list[tuple[str, str]]]]:
@@ -250,3 +248,9 @@ def engine_cases(folder: Path) -> dict[str, Any]:
         "rests": rests.tolist(),
         "written": list(filter(written_out, found)),
     }
+
+
+def written_out(source: str) -> bool:
+    """Say whether `rocking export` writes a source out: an engine with equal steps and a script."""
+    asked = resolve(source)
+    return bool(asked.engine and asked.declared.script) and not asked.accurate

@@ -12,14 +12,12 @@ import pandas as pd
 
 from engines import ENGINES
 from studies.drawing.styles import engine_title
-from studies.measures.again import worst_again
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of
 from studies.measures.words import capital, duration, listed, part
 from studies.measures.wrongness import KINDS
 from studies.page.facts import by_preset, presets
 from studies.scenes.told import (
     SCENES,
-    again,
     best_of,
     by_scene,
     cases_of,
@@ -58,14 +56,12 @@ def _posed(title: str, lines: pd.DataFrame) -> str:
 
 
 def scenes_told(published: Path) -> list[dict[str, Any]]:
-    """Return each scene in words: what was found, a table of engines and presets, the worst."""
+    """Return each scene in words: what was found, a table of engines and presets."""
     folder, sections = published / "scenes", []
     known = by_scene(folder)
-    worst = again(folder) if known else pd.DataFrame()
     for name, lines in known.items():
         told, source = SCENES[name], lines["source"]
         posed = lines.assign(engine=source.map(engine_of), preset=source.map(preset_of))
-        commands = worst_again(worst[worst["scene"] == name])["command"]
         sections.append(
             {
                 "name": name,
@@ -74,7 +70,6 @@ def scenes_told(published: Path) -> list[dict[str, Any]]:
                 "asked": told.asked,
                 "cases": cases_of(lines),
                 "table": by_preset(posed, told.words),
-                "worst": list(commands),
             }
         )
     return sections

@@ -17,7 +17,6 @@ from studies.kit.journal import Row
 from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_RUNNING, Running
 from studies.kit.plan import Plan, carry_out
-from studies.measures.again import WORST_AGAIN, worst_again
 from studies.measures.presets import engine_of, preset_of
 from studies.measures.words import listed
 from studies.scenes import KINDS, STUDY
@@ -25,10 +24,10 @@ from studies.scenes.cases import jobs
 from studies.scenes.frames import SEEN
 from studies.scenes.own_floor import exact_on_its_floor
 from studies.scenes.summaries import tabulate
-from studies.scenes.told import SCENES, again, by_scene, ends, floor_sentence, found_in, shown
+from studies.scenes.told import SCENES, by_scene, ends, floor_sentence, found_in, shown
 from studies.sources.registry import core_sources
 
-__all__ = ["again", "command", "finding", "report", "shown"]
+__all__ = ["command", "finding", "report", "shown"]
 
 DEFAULT_SOURCES = core_sources("naive", "fixed", "landing")
 SEEN_OF_A_SLIDE = ("place_m", "lift_m", "turn_rad")
@@ -135,10 +134,7 @@ TABLES = tuple(f"{kind}-summary" for kind in KINDS)
 def report(folder: Path) -> str:
     """Draw a folder's tables; write and return what they show."""
     tables = {name: found_in(folder / f"{name}.csv") for name in TABLES}
-    worst = again(folder).groupby("scene", sort=False)
-    asked = {f"{WORST_AGAIN}: {name}": worst_again(lines) for name, lines in worst}
-    tables |= {**shown(folder), **asked}
-    return tell(STUDY, folder, tables)
+    return tell(STUDY, folder, tables | shown(folder))
 
 
 def finding(folder: Path) -> str:

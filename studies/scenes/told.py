@@ -13,13 +13,10 @@ from analytic import RockingFrame, SlidingBlock
 from analytic.response import Outcome
 from engines import ENGINES
 from studies.drawing.styles import name_of
-from studies.kit import provenance
 from studies.kit.tables import read_table
-from studies.measures.again import commands, with_commands
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.words import listed, out_of, part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, counted, kinds_of, outcomes_of
-from studies.scenes.cases import jobs
 from studies.scenes.frames import COLUMNS as COLUMNS_OF_FRAMES
 from studies.scenes.frames import LOADS, PHASES
 from studies.scenes.places import PULSES
@@ -162,41 +159,6 @@ def by_scene(folder: Path) -> dict[str, pd.DataFrame]:
 def shown(folder: Path) -> dict[str, pd.DataFrame]:
     """Return the same by title."""
     return {f"Engines on {SCENES[name].title}": it for name, it in by_scene(folder).items()}
-
-
-def again(folder: Path) -> pd.DataFrame:
-    """Return each scene's cases in which an engine errs most, with the commands that ask them.
-
-    Those whose outcome is wrong come first, then those with the largest error.
-    """
-    worst = {}
-    for name, told in SCENES.items():
-        rows = asked(folder / f"{name}.csv", name)
-        wrong = kinds_in(rows, told.error) != "" if len(rows) else pd.Series(dtype=bool)
-        size = rows[told.error].abs().where(~wrong, np.inf).groupby(rows["source"], sort=False)
-        places = size.idxmax()
-        for place in places.loc[size.max().sort_values(ascending=False, kind="stable").index]:
-            row = rows.loc[place].dropna().to_dict()
-            worst[name, place] = {"scene": name, **row}
-    quick = bool(provenance.record_of(folder)["settings"]["quick"])
-    sources = list(dict.fromkeys(row["source"] for row in worst.values()))
-    every = jobs(sources, quick)
-    known = {frozenset({**job.labels, "source": job.source}.items()): job for job in every}
-    found = []
-    for row in worst.values():
-        called = frozenset(row.items())
-        job = next((job for names, job in known.items() if names <= called), None)
-        found.append(
-            commands(job.block, job.motion, job.source, job.options, outcome=row["outcome"])
-            if job
-            else ("no case of today's", "")
-        )
-    table = pd.DataFrame(worst.values(), columns=["scene", "source", "outcome", *ERRORS])
-    return with_commands(table, found)
-
-
-ERRORS = tuple(dict.fromkeys(told.error for told in SCENES.values()))
-"""Columns of errors."""
 
 
 LATE_M = 1e-4

@@ -21,7 +21,6 @@ from studies.kit.naming import Sources
 from studies.kit.options import PATIENT_RUNNING, PatientRunning
 from studies.kit.plan import Plan, by_label, carry_out
 from studies.kit.tables import table_in, write_table
-from studies.measures.again import WORST_AGAIN, commands, with_commands, worst_again
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, BANDS, Verdict, friction_of, invalidity, judge
 from studies.measures.words import NAMED, each_out_of, listed, out_of
@@ -36,7 +35,7 @@ from studies.stability.sensitivity import (
     with_growth,
 )
 
-__all__ = ["again", "command", "finding", "report"]
+__all__ = ["command", "finding", "report"]
 
 METHODS = (
     "exact",
@@ -185,7 +184,6 @@ def report(folder: Path) -> str:
         "Failures, and the first setting that avoids each": (
             failures(matrix)[["case", "source", "reason", "remedy"]]
         ),
-        WORST_AGAIN: worst_again(again(folder)),
         "Cases for which the reference itself does not hold": (
             matrix.loc[matrix["verdict"] == Verdict.INVALID.value, ["case", "invalid"]]
         ).drop_duplicates("case"),
@@ -203,18 +201,6 @@ def report(folder: Path) -> str:
         ),
     }
     return tell(STUDY, folder, tables)
-
-
-def again(folder: Path) -> pd.DataFrame:
-    """Return the failures, those that nothing mends first, with the commands that ask them."""
-    wrong = failures(table_in(folder, "stability"))
-    wrong = wrong.sort_values("remedy", key=lambda said: said != NOTHING, kind="stable")
-    cases, asked = {case.name: case for case in extremes(False)}, []
-    for name, source, outcome in wrong[["case", "source", "outcome"]].itertuples(index=False):
-        case = cases[name]
-        job = (case.block, case.motion, source, case.options(source))
-        asked.append(commands(*job, duration=case.duration, outcome=outcome))
-    return with_commands(wrong[["case", "source", "reason", "remedy"]], asked)
 
 
 def verdicts(matrix: pd.DataFrame) -> pd.DataFrame:

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import pandas as pd
 
-from studies.cases.paper import Case, sweep_cases
+from studies.cases.paper import sweep_cases
 from studies.drawing.kept import tell
 from studies.drawing.styles import engine_title
 from studies.kit.arguments import Out, figures, refuse_repeats
@@ -18,7 +18,6 @@ from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, carry_out
 from studies.kit.tables import write_table
-from studies.measures.again import WORST_AGAIN, asked_again, worst_again
 from studies.measures.claims import said_once, write_findings
 from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.measures.findings import findings
@@ -104,7 +103,6 @@ def report(folder: Path) -> str:
     tables = {
         "All figures": over_all(table),
         "The case where each source errs most": worst_cases(compared),
-        WORST_AGAIN: worst_again(again(folder)),
         "The paper's conclusions": pd.DataFrame(
             {
                 "holds": [item.verdict for item in said_once(found)],
@@ -113,12 +111,6 @@ def report(folder: Path) -> str:
         ),
     }
     return tell(STUDY, folder, tables)
-
-
-def again(folder: Path) -> pd.DataFrame:
-    """Return the case where each source errs most, with the commands that ask it again."""
-    compared = with_reference(read(folder))
-    return asked_again(folder, worst_cases(compared), compared, Case)
 
 
 def finding(folder: Path) -> str:

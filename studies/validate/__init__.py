@@ -7,17 +7,12 @@ STUDY = Study(
     help="""Random cases that nothing was tuned on, held against the exact solution.
 
 Outcomes, quantiles of the error, and how far a small error of the pulse moves the peak of each
-case: its condition number κ, and its sensitivity to errors of 1e-6 and 1e-4. And what landing steps
-lean on: the first cases with false hints about when an uplift is to be expected, about which
-corner, and how fast the block falls; and with --estimate what each engine says of its own error.
-Resumable.""",
-    tables=(
-        *("validate.csv", "errors.csv", "drawn.csv", "bands.csv", "hints.csv", "leaning.csv"),
-        *("halves.csv",),
-    ),
+case: its condition number κ, and its sensitivity to errors of 1e-6 and 1e-4. And with --estimate
+what each engine says of its own error. Resumable.""",
+    tables=("validate.csv", "errors.csv", "drawn.csv", "bands.csv", "halves.csv"),
     chapter=Chapter(
         question="And cases that nothing was tuned on?",
-        tables=("drawn.csv", "bands.csv", "leaning.csv"),
+        tables=("drawn.csv", "bands.csv"),
         quick=("--cases", "100"),
         minutes=(0.2, 0.3),
         weaker="Fewer random cases.",

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Sequence
 from itertools import pairwise
 from math import inf
 from typing import TYPE_CHECKING
@@ -12,7 +11,6 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from analytic.response import Outcome
-from engines.hints import TRUE, Hints
 from studies.cases.drawn import (
     FRICTION,
     KEPT,
@@ -25,15 +23,13 @@ from studies.cases.drawn import (
     everything,
     fate_of,
 )
-from studies.kit.jobs import Job
 from studies.measures.differences import WELL_CONDITIONED, conditioning_of, sensitivity_of
 from studies.measures.halving import estimates_of, published_trust
 from studies.measures.words import NAMED, gathered, listed, part, right_of
 from studies.measures.wrongness import counted, wrong_in
-from studies.sources.registry import Effort, resolve
 
 if TYPE_CHECKING:
-    from studies.cases.drawn import RandomCase
+    pass
 
 PEAKS, KAPPAS = (0.01, 0.1, 0.5), (10.0, 100.0)
 """Where bands end: of the exact peak over θcr, and of the larger of κ and κη."""
@@ -237,97 +233,3 @@ def bounded(compared: pd.DataFrame) -> pd.DataFrame:
 def _factors(rows: pd.DataFrame) -> dict[str, float]:
     trusts = {source: published_trust(str(source)) for source in rows["source"].unique()}
     return {source: math.nan if trust is None else trust.factor for source, trust in trusts.items()}
-
-
-HINTED = 30
-"""Cases, the first ones, that are asked with false hints and with a calm motion."""
-
-CALM = 0.9
-"""Amplitude of the calm motion, over the acceleration that lifts the block."""
-
-KNOWN = "true"
-"""The hint of the rows that the others are held against."""
-
-FALSE: Mapping[str, Hints] = {
-    "onset 2 % low": Hints(onset=0.98),
-    "onset 2 % high": Hints(onset=1.02),
-    "onset 20 % low": Hints(onset=0.8),
-    "onset 20 % high": Hints(onset=1.2),
-    "sides swapped": Hints(swapped=True),
-    "fall half as fast": Hints(fall=0.5),
-    "fall twice as fast": Hints(fall=2.0),
-}
-"""Name -> what the steps are told."""
-
-
-def hint_jobs(cases: Iterable[RandomCase], sources: Sequence[str], effort: Effort) -> list[Job]:
-    """Return a job for each case, false hint, and engine whose steps land on impacts.
-
-    Each case is asked with a pulse too weak to lift its block, too, by CALM, and that with true
-    hints beside.
-
-    Parameters
-    ----------
-    cases : iterable of RandomCase
-    sources : sequence of str
-        Names; those whose steps do not land are left out.
-    effort : Effort
-
-    Returns
-    -------
-    list of Job
-        Its labels are table ("hints"), hint (of FALSE, or KNOWN) and the fields of the case.
-    """
-    landing = [source for source in sources if resolve(source).lands]
-    asked = []
-    for case in cases:
-        calm = replace(case, amplitude_g=CALM / case.aspect)
-        asked += [(case, name, hints) for name, hints in FALSE.items()]
-        asked += [(calm, name, hints) for name, hints in {KNOWN: TRUE, **FALSE}.items()]
-    return [
-        Job(
-            labels={"table": "hints", "hint": name, **asdict(case)},
-            block=case.block,
-            motion=case.motion,
-            source=source,
-            options={**effort.options(source), "hints": hints},
-        )
-        for case, name, hints in asked
-        for source in landing
-    ]
-
-
-def leanings(known: pd.DataFrame, hinted: pd.DataFrame) -> pd.DataFrame:
-    """Hold rows with false hints beside those of the same cases and sources with true ones.
-
-    Parameters
-    ----------
-    known, hinted : DataFrame
-        Rows with the columns of `studies.measures.differences.with_reference`, and hint in the
-        second.
-
-    Returns
-    -------
-    DataFrame
-        The columns of leaning.csv.
-    """
-    same = known["case"].isin(hinted["case"]) & known["source"].isin(hinted["source"])
-    rows = pd.concat([known[same].assign(hint=KNOWN), hinted], ignore_index=True)
-    rows = rows.iloc[pd.factorize(rows["source"])[0].argsort(kind="stable")]
-    lifts, size = rows["exact_outcome"] != "at rest", rows["error"].abs()
-    rows = rows.assign(
-        lifts=lifts,
-        right=lifts & rows["agrees"],
-        still=~lifts & rows["agrees"],
-        size=size,
-        scaled=size / sensitivity_of(rows),
-    )
-    groups = rows.groupby(["source", "hint"], sort=False)
-    return groups.agg(
-        cases=("lifts", "sum"),
-        right=("right", "sum"),
-        still=("still", "sum"),
-        median_error=("size", "median"),
-        max_error=("size", "max"),
-        over_kappa=("scaled", "max"),
-    ).reset_index()

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import pandas as pd
 
-from studies.cases.drawn import KINDS, Drawn, draw
+from studies.cases.drawn import Drawn, draw
 from studies.drawing.kept import tell
 from studies.kit import provenance
 from studies.kit.arguments import Count, Out, Yes, one_of
@@ -19,7 +19,6 @@ from studies.kit.naming import CORE, Sources
 from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
 from studies.kit.plan import Plan, by_label, carry_out
 from studies.kit.tables import write_table
-from studies.measures.again import WORST_AGAIN, asked_again, worst_again
 from studies.measures.differences import (
     WELL_CONDITIONED,
     sensitivity_of,
@@ -30,15 +29,11 @@ from studies.measures.halving import ELSEWHERE, halved
 from studies.sources.registry import Effort
 from studies.validate import STUDY
 from studies.validate.claims import (
-    CALM,
     HALVES,
-    HINTED,
     bands,
     bounded,
     census,
     finding,
-    hint_jobs,
-    leanings,
     quantiles,
     width,
     with_bounds,
@@ -93,10 +88,7 @@ def plan(
     scene: Drawn = "block",
     estimate: bool = False,
 ) -> Plan:
-    """Return the plan that puts random cases to some sources, the first with false hints too.
-
-    With `estimate` all of them are asked at half the step, too.
-    """
+    """Return the plan of random cases for some sources, with `estimate` at half the step, too."""
     drawn = list(islice(draw(seed, scene), cases))
     jobs = [
         Job(
@@ -115,17 +107,17 @@ def plan(
         if finer is not None
     ]
     return Plan(
-        jobs=[*jobs, *hint_jobs(drawn[:HINTED], sources, effort), *halves],
+        jobs=[*jobs, *halves],
         settings={"seed": seed, **asdict(effort), **({} if scene == "block" else {"scene": scene})},
         growing={"case": range(cases), "source": sources},
         tabulate=by_label("table"),
-        # what becomes of a false hint is an answer, and half a step that failed is no estimate
+        # half a step that failed is no estimate, and no failure of the study
         needed=lambda rows: [row for row in rows if row["table"] == STUDY.name],
     )
 
 
 def report(folder: Path) -> str:
-    """Hold a folder's tables against the exact solution; write four more, return the text."""
+    """Hold a folder's tables against the exact solution; write its tables, return the text."""
     settings = provenance.record_of(folder)["settings"]
     compared = compare(folder, "validate")
     if halves := (folder / f"{HALVES}.csv").exists():
@@ -143,12 +135,7 @@ def report(folder: Path) -> str:
         "Errors over S": quantiles(compared.assign(error=compared["error"] / judged)),
         **{f"In bands of {by}": rows for by, rows in in_bands.groupby("by", sort=False)},
         "The largest errors": worst(compared),
-        WORST_AGAIN: worst_again(again(folder)),
     }
-    if (folder / "hints.csv").exists():
-        kept["leaning"] = leanings(compared, compare(folder, "hints"))
-        title = f"False hints; still: of as many cases at {CALM:g} of what lifts the block"
-        tables[title] = kept["leaning"]
     if halves:
         own = Effort(step=settings["step"], accuracy=settings["accuracy"]).own
         title = "Errors bounded by the difference from half the step, times a factor"
@@ -157,13 +144,6 @@ def report(folder: Path) -> str:
     for name, table in kept.items():
         write_table(folder / f"{name}.csv", table)
     return tell(STUDY, folder, tables, f"{finding(compared)} {S_IS}")
-
-
-def again(folder: Path) -> pd.DataFrame:
-    """Return the cases in which each source errs most, with the commands that ask them again."""
-    compared = pd.read_csv(folder / "errors.csv")
-    kind = KINDS[provenance.record_of(folder)["settings"].get("scene", "block")]
-    return asked_again(folder, worst(compared), compared, kind)
 
 
 def compare(folder: Path, table: str) -> pd.DataFrame:

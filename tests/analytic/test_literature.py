@@ -19,10 +19,10 @@ SICONOS = "Siconos tutorials, RockingBlock, reference file of the integrator Lso
 COSINE = 0.5 * math.pi
 
 
-def block_of(alpha, p, **restitution):
+def block_of(alpha, p, restitution=None):
     diagonal = 1.5 * GRAVITY / p**2
     width, height = diagonal * math.sin(alpha), diagonal * math.cos(alpha)
-    return RigidBlock(width=width, height=height, **restitution)
+    return RigidBlock(width=width, height=height, restitution=restitution)
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Threshold:
         return low
 
 
-ZHANG_BLOCK = block_of(0.25, 2.14, restitution=0.9)
+ZHANG_BLOCK = block_of(0.25, 2.14, 0.9)
 AT_FIVE = {"omega": 5.0 * ZHANG_BLOCK.p, "unit_g": 0.25}
 SMALL, LARGE = RigidBlock(width=0.4, height=1.2), RigidBlock(width=1.0, height=3.0)
 TURN = 2.0 * math.pi
@@ -136,7 +136,7 @@ def after(block, beta, omega_over_p, periods, start, last):
 )
 def test_hogans_steady_states(omega_over_p, start, printed, found):
     """Largest rotations to either side [deg], the larger first."""
-    block = block_of(0.18, 2.0, restitution=0.88)
+    block = block_of(0.18, 2.0, 0.88)
     begun = (start[0] * block.alpha, start[1] * block.alpha * block.p)
     theta = after(block, 2.0, omega_over_p, 400, begun, last=8)
     sides = sorted(np.degrees([theta.max(), -theta.min()]), reverse=True)
@@ -147,7 +147,7 @@ def test_hogans_steady_states(omega_over_p, start, printed, found):
 @pytest.mark.parametrize(("beta", "period"), [(3.1, 1), (3.2, 2), (3.21, 4), (3.23, 8)])
 def test_hogans_cascade(beta, period):
     """The number of forcing periods after which the orbit repeats."""
-    block = block_of(math.atan(0.5), 2.0, restitution=0.5)
+    block = block_of(math.atan(0.5), 2.0, 0.5)
     theta = after(block, beta, TURN / 3.0, 4000, (0.3 * block.alpha, 0.0), last=16)
     apart = [abs(theta[n:] - theta[:-n]).max() for n in range(1, 9)]
     assert next(n for n, it in enumerate(apart, 1) if it < 1e-6 * block.alpha) == period

@@ -18,7 +18,6 @@ from analytic import conditioning, simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome
 from engines import FRAMES, core_engines
-from engines.hints import TRUE, Hints
 from engines.scene import ACCURACIES
 from studies.cases.drawn import draw
 
@@ -215,36 +214,3 @@ def test_a_block_at_rest_does_not_lean_on_the_corner_that_carries_it(engine, asp
     # long steps feel the load of the one before, and the more so the farther off the onset is
     assert leans.max() < 1e-7
     assert leans[100:].max() < 1e-8
-
-
-WRONG = ({"onset": 0.8}, {"onset": 1.2}, {"swapped": True}, {"fall": 0.5}, {"fall": 2.0})
-FALSE_HINTS = [Hints(**wrong) for wrong in WRONG]
-
-
-@pytest.mark.parametrize("hints", FALSE_HINTS, ids=str)
-def test_false_hints_choose_other_steps_and_not_what_happens(engine, hints):
-    """A block that lifts where nothing was expected lifts within a step, p dt = 5e-3 late, of which
-    the peak feels the square. One that was expected to lift and does not may lean into a contact
-    that has been made ready to let go of it, by less than what it could ever show."""
-    exact = simulate(BLOCK, SHAKEN)
-    true, misled = (rocked(engine, hints=h) for h in (TRUE, hints))
-    assert misled.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-3)
-    assert len(misled.impacts) == len(exact.impacts)
-    if hints.onset != 1.0:
-        assert misled.steps != true.steps
-        assert abs(misled.peak_ratio - exact.peak_ratio) > abs(true.peak_ratio - exact.peak_ratio)
-    assert rocked(engine, pulse(0.9, 3.0, 2), hints=hints).peak_ratio < 1e-3
-
-
-def test_fixed_steps_take_no_hints(engine):
-    peaks = {
-        rocked(engine, preset="fixed", step=5e-3, hints=hints).peak_ratio
-        for hints in (TRUE, *FALSE_HINTS)
-    }
-    assert len(peaks) == 1
-
-
-@pytest.mark.parametrize(("name", "value"), [("onset", 0.0), ("onset", math.nan), ("fall", -1.0)])
-def test_hints_that_make_no_sense_are_refused(name, value):
-    with pytest.raises(ValueError, match=f"{name} is .*; it must be"):
-        Hints(**{name: value})

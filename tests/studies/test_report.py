@@ -19,7 +19,6 @@ from studies.catalogue import CHAPTERS, STUDIES
 from studies.measures.published import PUBLISHED
 from studies.page import page, report
 from studies.page.page import AXES, engine_cases
-from studies.sweep import study as sweep
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 SMALL = {
@@ -99,13 +98,6 @@ def test_the_page_says_what_the_tables_say(made):
     assert f"modified the fall wrong in {line.fall_wrong}." in text
     record = json.loads((made / "sweep" / "provenance.json").read_text())
     assert f"mujoco {record['engines']['mujoco']}" in text
-
-
-def test_a_worst_case_is_copied_as_a_command(made):
-    text = (made / "report.html").read_text()
-    words = sweep.again(made / "sweep").set_index("source").loc["modified", "compare"]
-    assert words.startswith("rocking compare --width")
-    assert f'<td><button type="button" data-copy value="{words}">copy</button></td>' in text
 
 
 def test_a_picture_is_described_and_what_is_weaker_is_said(made):

@@ -30,7 +30,6 @@ from studies.scenes.study import reduce
 from studies.scenes.summaries import tabulate
 from studies.scenes.told import (
     SCENES,
-    again,
     ends,
     floor_sentence,
     kinds_in,
@@ -184,20 +183,6 @@ def test_a_block_that_is_held_is_no_wrong_slide():
 def test_each_scene_has_its_pictures():
     drawn = pictures(PUBLISHED / "scenes").keys()
     assert drawn == {"floor", *(f"{name}-{what}" for name in SCENES for what in ("scene", "time"))}
-
-
-def test_the_worst_cases_come_first_with_the_commands_that_ask_them(capsys):
-    lines = again(PUBLISHED / "scenes")
-    assert list(lines["scene"].unique()) == list(SCENES)
-    frames, slides = (lines[lines["scene"] == name] for name in SCENES)
-    assert frames.iloc[0][["source", "outcome"]].to_list() == ["pymunk:naive", "overturned"]
-    assert frames["error"].dropna().abs().is_monotonic_decreasing
-    assert (slides["compare"] == "no option asks for its launch").any()
-    for row in (frames.iloc[0], slides[slides["source"] == "pymunk:naive"].iloc[0]):
-        assert run([*row["compare"].split()[1:], "--json"]) == 0
-        _, found = map(json.loads, capsys.readouterr().out.splitlines())
-        assert found["outcome"] == row["outcome"]
-        assert row["export"].startswith("rocking export --scene ")
 
 
 @pytest.mark.skipif(not ENGINES["newton"].installed, reason="Newton is not installed")

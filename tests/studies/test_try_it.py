@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from analytic import RigidBlock, SinePulse, simulate
+from studies import respond
+from studies.__main__ import run
 from studies.cases.paper import free_rocking_window
 from studies.page import page
 
@@ -60,3 +62,22 @@ def test_the_page_solves_the_exact_equations(case):
     shown = np.array(found["samples"])
     assert len(shown) == len(right.history.theta)
     assert shown / block.alpha == pytest.approx(right.history.theta / block.alpha, abs=TOLERANCE)
+
+
+@pytest.mark.parametrize("source", ["exact", "mujoco:naive"])
+def test_the_commands_of_the_page_ask_what_it_shows(source, capsys, tmp_path):
+    engine, write = quickjs.Context(), str(source != "exact").lower()
+    engine.eval(SCRIPT)
+    values = f"0.5, 3, 2, 0.4, 6.2832, '{source}', {write}"
+    compare, *export = json.loads(engine.eval(f"JSON.stringify(commands({values}))"))
+    assert run([*compare.split()[1:], "--json", "--jobs", "1"]) == 0
+    found = json.loads(capsys.readouterr().out.splitlines()[-1])
+    block, pulse = (
+        RigidBlock(width=0.5, height=1.5),
+        SinePulse.in_g(0.4, omega=6.2832, half_cycles=2),
+    )
+    peak = respond(source, block, pulse).peak_ratio
+    assert (found["source"], found["peak_ratio"]) == (source, pytest.approx(peak, rel=1e-9))
+    for line in export:
+        assert run(line.replace("DIR", str(tmp_path)).split()[1:]) == 0
+        assert f"{peak:.9g}" in capsys.readouterr().out

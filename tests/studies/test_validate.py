@@ -1,11 +1,9 @@
 """Random cases: the draw, the condition number, the report."""
 
-import json
 import math
 from dataclasses import replace
 from itertools import islice
 
-import numpy as np
 import pandas as pd
 import pytest
 
@@ -25,14 +23,11 @@ from studies.measures.differences import (
     with_reference_of_frames,
 )
 from studies.measures.halving import ELSEWHERE, published_trust
-from studies.validate import STUDY, study
+from studies.validate import STUDY
 from studies.validate.claims import (
-    FALSE,
-    KNOWN,
     bands,
     bounded,
     finding,
-    leanings,
     quantiles,
     worst,
 )
@@ -111,7 +106,7 @@ PULSED = ("case", "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over
 
 
 @pytest.mark.slow
-def test_the_command_asks_random_frames_and_its_worst_again(tmp_path, capsys):
+def test_the_command_asks_random_frames(tmp_path, capsys):
     asked = ["validate", "--scene", "frame", "--cases", "5", "--sources", "mujoco:landing"]
     assert run([*asked, "--out", str(tmp_path), "--jobs", "1"]) == 0
     assert "2 to 5 columns" in capsys.readouterr().out
@@ -122,13 +117,6 @@ def test_the_command_asks_random_frames_and_its_worst_again(tmp_path, capsys):
     drawn = pd.read_csv(tmp_path / "drawn.csv").set_index("set")["cases"]
     assert drawn["kept"] == 5
     assert drawn["drawn"] == drawn[["kept", "near", "lifted", SLIDES, TIPS]].sum()
-    again = study.again(tmp_path)
-    worst = errors[errors["error"].notna()].iloc[0]
-    words = again.set_index("case").loc[worst["case"], "compare"].split()
-    assert run([*words[1:], "--json"]) == 0
-    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
-    found = {line["source"]: line["peak_ratio"] for line in lines}
-    assert found["mujoco:landing"] / found["exact"] - 1.0 == pytest.approx(worst["error"], rel=1e-5)
 
 
 def test_a_report_counts_the_cases_that_were_drawn(tmp_path):
@@ -245,38 +233,6 @@ def test_a_folder_grows_and_its_report_says_what_is_exact(tmp_path):
     assert errors.loc["housner", "error"].abs().max() > 1e-3
 
 
-def test_landing_engines_are_asked_with_false_hints_too(tmp_path):
-    rows = fill(STUDY, plan(3, 5, ["exact", "mujoco", "mujoco:fixed"]), tmp_path, ALONE)
-    assert len([row for row in rows if row["table"] == "validate"]) == 9
-    assert KNOWN in report(tmp_path)
-    hinted = pd.read_csv(tmp_path / "hints.csv")
-    assert set(hinted["source"]) == {"mujoco"}
-    assert set(hinted["hint"]) == {KNOWN, *FALSE}
-    leaning = pd.read_csv(tmp_path / "leaning.csv").set_index("hint")
-    assert list(leaning.index) == [KNOWN, *FALSE]
-    assert (leaning["cases"] == 3).all()
-    assert leaning.loc[KNOWN, "still"] == 3
-    errors = pd.read_csv(tmp_path / "errors.csv")
-    own = errors[errors["source"] == "mujoco"]["error"].abs()
-    assert leaning.loc[KNOWN, "max_error"] == pytest.approx(own.max(), rel=1e-12)
-    assert leaning.loc["onset 20 % low", "median_error"] > 2 * leaning.loc[KNOWN, "median_error"]
-    assert leaning.loc["onset 20 % low", "right"] == 3
-
-
-def test_a_wrong_outcome_with_a_false_hint_is_counted():
-    known = pd.DataFrame(
-        {"case": [0, 1], "source": "mujoco", "error": [1e-6, -3e-6], "agrees": True}
-    ).assign(kappa=2.0, kappa_eta=-3.0, sensitivity=2.5, exact_outcome="rocked")
-    wrong = known[known["case"] == 1].assign(hint="onset 2 % low", error=np.nan, agrees=False)
-    stays = wrong.assign(exact_outcome="at rest", agrees=True)
-    table = leanings(known, pd.concat([wrong, stays, stays.assign(agrees=False)]))
-    true, false = table.itertuples()
-    assert (true.hint, true.cases, true.right, true.still) == (KNOWN, 1, 1, 0)
-    assert (true.max_error, true.over_kappa) == pytest.approx((3e-6, 1e-6))
-    assert (false.cases, false.right, false.still) == (1, 0, 1)
-    assert math.isnan(false.max_error)
-
-
 def test_random_cases_carry_estimates_and_what_these_bound(tmp_path):
     asked = plan(4, 5, ["exact", "mujoco", "moreau"], EffortOptions(step=0.02), estimate=True)
     rows = fill(STUDY, asked, tmp_path, ALONE)
@@ -304,10 +260,10 @@ def test_random_cases_carry_estimates_and_what_these_bound(tmp_path):
     assert f"({ELSEWHERE})" in text
 
 
-def test_a_model_has_no_hints_and_no_half_steps_and_another_seed_is_refused(tmp_path):
+def test_a_model_has_no_half_steps_and_another_seed_is_refused(tmp_path):
     fill(STUDY, plan(2, 5, ["exact"], estimate=True), tmp_path, ALONE)
     text = report(tmp_path)
-    assert "half the step" not in text and "hints" not in text
-    assert not [name for name in ("halves", "leaning") if (tmp_path / f"{name}.csv").exists()]
+    assert "half the step" not in text
+    assert not (tmp_path / "halves.csv").exists()
     with pytest.raises(FolderError, match="settings"):
         fill(STUDY, plan(2, 2, ["exact"]), tmp_path, ALONE)
