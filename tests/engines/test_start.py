@@ -31,6 +31,7 @@ from analytic.criteria import free_amplitude, frictionless_fall, quarter_period
 from analytic.motion import SinePulse, Still
 from analytic.response import Outcome
 from engines.run.drive import build
+from engines.scene import ACCURACIES
 
 STILL = Still()
 TILT = 0.4 * BLOCK.alpha
@@ -82,6 +83,23 @@ def test_any_start(engine, preset, frame, case, side):
     assert first.velocity_before == pytest.approx(true.velocity_before, rel=coarsely)
     assert first.ratio == pytest.approx(true.ratio, rel=coarsely)
     assert found.history.theta == pytest.approx(exact.history.theta, abs=nearly * BLOCK.alpha)
+
+
+@pytest.mark.parametrize("aspect", [1.5, 10.0])
+@pytest.mark.parametrize("engine", CORE)
+def test_twenty_impacts_of_a_release_come_when_the_closed_forms_say(engine, aspect):
+    """Each impact adds an error of at most (p dt)^2 / 2 to the time, in units of 1/p."""
+    block = RigidBlock(width=0.5, height=0.5 * aspect)
+    tops = [0.9 * block.alpha]
+    while len(tops) < 20 and tops[-1] >= 1e-3 * block.alpha:
+        tops.append(free_amplitude(block, tops[0], len(tops)))
+    quarters = np.array([quarter_period(block, top) for top in tops[:-1]])
+    known = np.cumsum(2.0 * quarters) - quarters[0]
+    found = rocked(engine, STILL, system=block, start=(tops[0], 0.0), duration=1.01 * known[-1])
+    times = np.array([impact.time for impact in found.impacts])[: len(known)]
+    assert len(known) > 4
+    within = 0.5 / ACCURACIES["standard"] ** 2 * np.arange(1, len(known) + 1)
+    assert (abs(times - known) * block.p < within).all()
 
 
 @every_fixed_use

@@ -18,7 +18,7 @@ from studies.kit.plan import Plan, fill
 from studies.sweep import STUDY as SWEEP
 
 ASKING = [
-    *("histories", "free", "literature", "validate"),
+    *("histories", "validate"),
     *(
         pytest.param(name, marks=pytest.mark.slow)
         for name in (

@@ -251,7 +251,7 @@ def test_a_folder_that_is_removed_meanwhile_is_no_success(what, tmp_path):
 @pytest.mark.parametrize(
     ("change", "named"),
     [
-        ({"study": "free"}, 'study: "free" there, "sweep" here'),
+        ({"study": "contact"}, 'study: "contact" there, "sweep" here'),
         ({"journal": 0}, "journal: 0 there"),
         ({"settings": {"step": 0.1}}, "settings step: 0.1 there, null here"),
     ],

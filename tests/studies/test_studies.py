@@ -144,7 +144,6 @@ MADE = [
 ]
 AT_LENGTH = [
     "defaults --quick --sources pybullet:naive",
-    "free --quick --sources exact housner",
     "validate --cases 3 --sources exact mujoco",
     "validity --quick --sources pybullet:fixed",
 ]
