@@ -3,12 +3,7 @@
 import pytest
 from commanding import refused
 
-<<<<<<< HEAD
-
 RETIRED = ("ensemble", "free", "harmonic", "literature", "redraw", "throughput", "versions")
-=======
-RETIRED = ("free", "harmonic", "literature", "redraw", "throughput", "versions")
->>>>>>> c7c26ab5 (Free rocking of engines follows the closed forms over twenty impacts: a conformance test)
 
 
 @pytest.mark.parametrize("name", RETIRED)
