@@ -29,7 +29,6 @@ from analytic.criteria import (
     overturning_amplitude,
     quarter_period,
 )
-from analytic.orbits import orbit_limits
 from engines import Scene
 from studies import respond
 
@@ -55,7 +54,6 @@ USUAL = {
     overturning_modes: ARRAYS,
     overturning_amplitude: {"omega_over_p": 1.0},
     first_mode: {"amplitude_g": 1.0, "friction": 0.5, "aspect": 2.0},
-    orbit_limits: {"restitution": 0.9, "omega_over_p": 4.0, "n": 1},
     frictionless_fall: {"block": BLOCK, "theta": 0.5},
 }
 """What can be asked, and with what it is answered."""
@@ -106,7 +104,6 @@ WRONG = {
     },
     overturning_amplitude: {"half_cycles": (3,), "omega_over_p": (NAN,)},
     first_mode: {"amplitude_g": (NAN,), "friction": (0.0,), "aspect": (-2.0,)},
-    orbit_limits: {"restitution": (1.0,), "omega_over_p": (0.0,), "n": (2,)},
     frictionless_fall: {"theta": (BLOCK.alpha,)},
 }
 """Values, of one argument at a time, that are refused by its name and their own."""

@@ -56,7 +56,7 @@ sweep --time-limit 0 --out DIR | --time-limit is '0' | positive
 histories --figure 3 --out DIR | --figure is '3' | 2, 4, 5
 sweep --time-limit 1e150 --out DIR | --time-limit is '1e150' | up to 1e9
 precision --out DIR --time-limit nan | --time-limit is 'nan' | positive
-free --out DIR --jobs 1.5 | --jobs is '1.5' | whole
+histories --out DIR --jobs 1.5 | --jobs is '1.5' | whole
 animate CASE --slower 0 --out film.gif | --slower is '0' | positive
 blocks list.csv --record X.AT2 --scale 0 --out DIR | --scale is '0'; it must be a positive finite
 blocks list.csv --record X.AT2 --scale 1 x --out DIR | --scale is 'x'
