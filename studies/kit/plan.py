@@ -24,7 +24,7 @@ from studies.kit.provenance import seal
 from studies.kit.refusing import one_line
 from studies.kit.runner import Reduce, exit_code, run_jobs
 from studies.kit.study import Study
-from studies.kit.tables import write_table
+from studies.kit.tables import with_head, write_table
 from studies.sources.registry import Source
 
 Tables: TypeAlias = "Mapping[str, pd.DataFrame]"
@@ -158,8 +158,9 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
             rows = run_jobs(jobs, executor=executor, reduce=reduce, journal=journal, makers=makers)
             journal.check()
             tabulate = plan.tabulate or partial(_whole, study.name)
+            published = [chapter.folder for chapter in study.chapters]
             for name, table in tabulate(rows).items():
-                write_table(out / f"{name}.csv", table)
+                write_table(out / f"{name}.csv", with_head(table, published, name))
             computed = {"rows": len(rows), "computed": len(answered)}
             found: dict[str, Any] = computed if jobs else {}
             found |= {"also": taken} if taken else {}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
@@ -63,8 +64,32 @@ def write_table(path: Path, table: pd.DataFrame) -> None:
     write_text(path, safe.to_csv(index=False, na_rep="nan"))
 
 
+COLUMNS = Path(__file__).parents[1] / "published" / "columns.csv"
+"""The columns of every published table."""
+
+
+def with_head(table: pd.DataFrame, folders: Iterable[str], name: str) -> pd.DataFrame:
+    """Return a table; one that has no columns with those of the published one.
+
+    Parameters
+    ----------
+    table : DataFrame
+    folders : iterable of str
+        Where its study is published.
+    name : str
+        Of its file, without .csv.
+    """
+    if len(table.columns):
+        return table
+    known = pd.read_csv(COLUMNS, keep_default_na=False)
+    mine = known["table"].isin([f"{each}/{name}.csv{end}" for each in folders for end in ("", PACKED)])
+    return pd.DataFrame(columns=known.loc[mine, "column"].drop_duplicates())
+
+
 def read_table(path: Path, *words: str) -> pd.DataFrame:
     """Read a table back as it was written: empty words are such, and numbers may be missing.
+
+    A blank file is a table without columns.
 
     Parameters
     ----------
@@ -73,7 +98,10 @@ def read_table(path: Path, *words: str) -> pd.DataFrame:
         Columns of words that may look like numbers, besides message.
     """
     texts = dict.fromkeys(("message", *words), str)
-    table = pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=texts)
+    try:
+        table = pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=texts)
+    except pd.errors.EmptyDataError:
+        return pd.DataFrame()
     return table.assign(**{name: table[name].map(unquoted) for name in _words(table)})
 
 

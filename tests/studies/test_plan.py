@@ -30,7 +30,10 @@ from studies.kit.journal import FolderError
 from studies.kit.options import DEFAULT_RUNNING, PatientRunning
 from studies.kit.plan import Plan, by_label, carry_out, fill
 from studies.kit.study import Study
-from studies.kit.tables import write_table
+from studies.kit.tables import read_table, write_table
+from studies.measures.published import PUBLISHED
+from studies.scenes import STUDY as SCENES
+from studies.scenes import summaries as scenes
 from studies.sources.registry import SOURCES, UnknownSourceError, resolve
 
 PULSE = SinePulse.in_g(0.4, omega=2.0 * math.pi)
@@ -193,3 +196,14 @@ def test_a_job_travels_with_what_its_name_meant(monkeypatch):
     assert replace(sent, source="exact").asked.model == "exact"
     with pytest.raises(UnknownSourceError):
         replace(sent, source="another")
+
+
+def test_an_empty_table_keeps_its_head_and_is_read(tmp_path):
+    """Of the scenes nobody asked about: each has the columns that it has where somebody did."""
+    fill(SCENES, Plan(tabulate=lambda _: scenes.tabulate([])), tmp_path)
+    told = pd.read_csv(PUBLISHED / "columns.csv")
+    for path in tmp_path.glob("*.csv"):
+        head = told.loc[told["table"] == f"scenes/{path.name}", "column"]
+        assert list(read_table(path).columns) == list(head) != [], path.name
+    (tmp_path / "blank.csv").write_text("\n")
+    assert read_table(tmp_path / "blank.csv").empty
