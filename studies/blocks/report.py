@@ -21,7 +21,10 @@ from studies.kit.tables import quoted, unquoted
 from studies.measures.words import capital, listed, out_of
 from studies.sources.registry import resolve
 
-WORDS = ("name", "record", "source", "outcome", "message", "islands", "no_margin")
+WORDS = (
+    *("name", "record", "record_digest", "source"),
+    *("outcome", "message", "islands", "no_margin"),
+)
 """Columns of text: a block may be called nan, or 007."""
 
 SLIDES, SLIDES_FIRST = "slides", "slides first"
@@ -42,8 +45,15 @@ def read(folder: Path) -> pd.DataFrame:
     return table.astype({name: float for name in table if name not in WORDS})
 
 
-def report(folder: Path) -> str:
-    """Draw a folder's blocks.csv, write its page and its findings; return these."""
+def report(folder: Path, places: Mapping[str, str]) -> str:
+    """Draw a folder's blocks.csv, write its page and its findings; return these.
+
+    Parameters
+    ----------
+    folder : Path
+    places : mapping
+        Name of a record -> the path of its file, with which the page's commands work anywhere.
+    """
     rows, made = read(folder), provenance.record_of(folder)
     lines, sources = ranked(rows), list(dict.fromkeys(rows["source"]))
     answers = answered(rows)
@@ -67,7 +77,11 @@ def report(folder: Path) -> str:
         scales=sorted(set(rows["scale"])),
         sources=sources,
         lines=[
-            {**line, "answers": found, "command": command_of(line, sources, made["settings"])}
+            {
+                **line,
+                "answers": found,
+                "command": command_of(line, places, sources, made["settings"]),
+            }
             for line, found in zip(lines.to_dict("records"), beside, strict=True)
         ],
         messages=messages(rows),
@@ -149,7 +163,12 @@ def doubts(rows: pd.DataFrame) -> list[str]:
     return said or ["none slides, lifts off its pivot or is near the factor that overturns it"]
 
 
-def command_of(line: Mapping[Any, Any], sources: Sequence[str], settings: Mapping[str, str]) -> str:
+def command_of(
+    line: Mapping[Any, Any],
+    places: Mapping[str, str],
+    sources: Sequence[str],
+    settings: Mapping[str, str],
+) -> str:
     """Return the command that compares the sources on a case of the list."""
     engines = any(resolve(name).engine for name in sources)
     asked = ("width", "width_m"), ("height", "height_m"), ("scale", "scale"), ("tilt", "tilt")
@@ -162,7 +181,7 @@ def command_of(line: Mapping[Any, Any], sources: Sequence[str], settings: Mappin
         known["scene"] = "slide"
         sources = [name for name in sources if name == "exact" or resolve(name).engine]
     said = " ".join(f"--{name} {value}" for name, value in known.items())
-    record = shlex.quote(str(line["record"]))
+    record = shlex.quote(places[line["record"]])
     return f"rocking compare {said} --record {record} --sources {' '.join(sources or ['exact'])}"
 
 

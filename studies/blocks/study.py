@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -33,7 +36,7 @@ from studies.kit.arguments import (
     refuse_repeats,
     several,
 )
-from studies.kit.jobs import Job, summary
+from studies.kit.jobs import Job, plain, summary
 from studies.kit.journal import Row
 from studies.kit.naming import Sources
 from studies.kit.options import DEFAULT_RUNNING, Running
@@ -54,6 +57,8 @@ FOUND = ("lifts", "margin", "margin_friction", "islands")
 """Columns of a block under a record, at whatever factor."""
 SOON_S = 2.0
 """A search for a margin that takes longer [s] shows its progress."""
+DIGEST = "record_digest"
+"""Column that tells records of the same name apart."""
 CASE = ["name", "record", "scale"]
 OF_A_BLOCK = CASE[:2]
 """Columns that name a case, and all cases of a block under a record."""
@@ -102,7 +107,8 @@ def command(
     running.refuse_too_much(asked, cases, ("exact", *sources), yes=yes)
     settings = {"units": units or "", "baseline": baseline or ""}
     chosen = plan(listed, grounds, scale, sources, settings, running.time_limit)
-    return carry_out(STUDY, chosen, out, running, report)
+    places = {path.name: str(path.absolute()) for path in record}
+    return carry_out(STUDY, chosen, out, running, partial(report, places=places))
 
 
 def plan(
@@ -117,19 +123,21 @@ def plan(
     asked = list(dict.fromkeys(["exact", *sources]))
     scaled = {name: [_scaled(grounds[name], name, scale) for scale in scales] for name in grounds}
     jobs = []
+    digests = {name: digest_of(ground) for name, ground in grounds.items()}
     for cabinet, record in product(cabinets, grounds):
+        posed = cabinet, record, digests[record]
         for (scale, ground), source in product(zip(scales, scaled[record], strict=True), asked):
-            jobs.append(_job(cabinet, record, ground, scale, source, ANSWERS))
+            jobs.append(_job(*posed, ground, scale, source, ANSWERS))
         if isinstance(cabinet.system, RigidBlock):
-            jobs.append(_job(cabinet, record, grounds[record], NO_SCALE, "exact", MARGINS))
+            jobs.append(_job(*posed, grounds[record], NO_SCALE, "exact", MARGINS))
 
     def tabulate(rows: Sequence[Row]) -> Tables:
         table = joined(rows)
         return {STUDY.name: table[table["source"].isin(sources)]}
 
-    growing: dict[str, Sequence[Any]] = {
-        "name": [cabinet.name for cabinet in cabinets],
-        "record": list(grounds),
+    growing: dict[str, Sequence[Any] | Mapping[str, Row]] = {
+        "name": {cabinet.name: _sizes(cabinet) for cabinet in cabinets},
+        "record": {name: {DIGEST: digest} for name, digest in digests.items()},
         "scale": [*scales, NO_SCALE],
         "source": asked,
     }
@@ -150,10 +158,26 @@ def _scaled(ground: Record, name: str, scale: float) -> Record:
         raise BadInputError(f"--scale is {scale:g}; it must be {allowed} ({error})") from error
 
 
+def _sizes(cabinet: Cabinet) -> Row:
+    """Return what a block's name means."""
+    return {name: value for name, value in asdict(cabinet).items() if name != "name"}
+
+
+def digest_of(record: Record) -> str:
+    """Return what tells a record from another one of the same name."""
+    text = json.dumps(record, default=plain)
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
 def _job(
-    cabinet: Cabinet, record: str, motion: Record, scale: float, source: str, table: str
+    cabinet: Cabinet,
+    record: str,
+    digest: str,
+    motion: Record,
+    scale: float,
+    source: str,
+    table: str,
 ) -> Job:
-    labels = {"name": cabinet.name, "width_m": cabinet.width_m}
     # a model of what rocks is not asked about what slides: `joined` marks its row
     known = source == "exact" or resolve(source).engine
     block = cabinet.system if known else cabinet.block
@@ -167,11 +191,10 @@ def _job(
     return Job(
         labels={
             "table": table,
-            **labels,
-            "height_m": cabinet.height_m,
-            "friction": cabinet.friction,
-            "tilt": cabinet.tilt,
+            "name": cabinet.name,
+            **_sizes(cabinet),
             "record": record,
+            DIGEST: digest,
             "scale": scale,
         },
         block=block,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import pandas as pd
@@ -193,14 +193,18 @@ def save(drawing: Figure, path: Path) -> None:
         if path.suffix != ".png":
             drawing.savefig(file, format=path.suffix[1:], dpi=DPI)
             return
-        canvas = FigureCanvasAgg(drawing)
-        canvas.draw()
-        # a palette of its own makes a picture a third as large
-        whole = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-        few = whole.quantize(
-            COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE
-        )
-        few.save(file, "png", optimize=True, dpi=(DPI, DPI))
+        write_points(drawing, file)
+
+
+def write_points(drawing: Figure, file: BinaryIO) -> None:
+    """Write a figure that has its layout as a PNG with COLOURS colours."""
+    drawing.set_dpi(DPI)
+    canvas = FigureCanvasAgg(drawing)
+    canvas.draw()
+    # a palette of its own makes a picture a third as large
+    whole = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+    few = whole.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE)
+    few.save(file, "png", optimize=True, dpi=(DPI, DPI))
 
 
 def save_all(drawings: Mapping[str, Figure], folder: Path, suffix: str = ".png") -> list[Path]:

@@ -71,7 +71,7 @@ def run(studies: Sequence[Study], arguments: list[str]) -> int:
         refusing.give_up_output()
         return 128 + signal.SIGPIPE
     except (OSError, ImportError) as error:
-        return refusing.refuse(str(error))
+        return refusing.refuse(refusing.reason(error, arguments))
     except (ArithmeticError, MemoryError, ValueError) as error:
         if REFUSAL.match(str(error)):
             return refusing.refuse(str(error))

@@ -86,10 +86,20 @@ class Journal:
         self.check()
         made = named(maker)
         if made not in self._named:
-            _write(self._descriptor, {"made": made, "of": dict(maker)})
+            self._write({"made": made, "of": dict(maker)})
             self._named.add(made)
-        _write(self._descriptor, {"key": key, "made": made, "row": row})
+        self._write({"key": key, "made": made, "row": row})
         self.kept[key] = Entry(row, maker)
+
+    def _write(self, entry: Mapping[str, Any]) -> None:
+        line = seal(entry)
+        try:
+            if os.write(self._descriptor, line) == len(line):
+                return
+        except OSError as error:
+            if error.errno not in NO_ROOM:
+                raise
+        raise OSError(errno.ENOSPC, "the disk is full", str(self._path))
 
     def check(self) -> None:
         """Raise FolderError if the folder, or the journal in it, is no longer there."""
@@ -318,14 +328,3 @@ def _entry(folder: Path, number: int, line: bytes) -> Row:
 
 def _damage(folder: Path, number: int) -> FolderError:
     return FolderError(folder, f"its {JOURNAL} is damaged in line {number}")
-
-
-def _write(descriptor: int, entry: Mapping[str, Any]) -> None:
-    line = seal(entry)
-    try:
-        if os.write(descriptor, line) == len(line):
-            return
-    except OSError as error:
-        if error.errno not in NO_ROOM:
-            raise
-    raise OSError("the disk is full")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
@@ -53,7 +53,8 @@ class Plan:
     settings : mapping, optional
         What all rows depend on beside the code; must be the same whenever a folder is used.
     growing : mapping, optional
-        Column -> the values asked for. A folder may gain values, but one that holds others is
+        Column -> the values asked for; where these are names that a user chose, each with what it
+        means, columns and their values. A folder may gain values, but one that holds others is
         refused, so that its table is what was asked for and nothing is lost.
     ask : callable, optional
         How a job is put to its source.
@@ -67,7 +68,7 @@ class Plan:
 
     jobs: Sequence[Job] | Callable[[], Sequence[Job]] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
-    growing: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    growing: Mapping[str, Sequence[Any] | Mapping[str, Row]] = field(default_factory=dict)
     ask: Callable[[Job, Source], Response] = ask
     reduce: Reduce = summary
     tabulate: Callable[[Sequence[Row]], Tables] | None = None
@@ -138,10 +139,10 @@ def fill(study: Study, plan: Plan, out: Path, running: Running = DEFAULT_RUNNING
     subject = provenance.subject(study.name, **plan.settings)
     others = [elsewhere.read(folder, subject) for folder in running.also or ()]
     with open_journal(out, subject, study.products) as journal:
-        _refuse_a_part(out, [entry.row for entry in journal.kept.values()], plan.growing)
+        _refuse_others(out, [entry.row for entry in journal.kept.values()], plan.growing)
         path = out / PROVENANCE
         asked = {
-            column: str(values) if isinstance(values, range) else list(values)
+            column: str(values) if isinstance(values, range) else values
             for column, values in plan.growing.items()
         }
         record = provenance.begin(path, subject, asked)
@@ -174,8 +175,10 @@ def _whole(name: str, rows: Sequence[Row]) -> Tables:
     return {name: pd.DataFrame(rows)}
 
 
-def _refuse_a_part(folder: Path, rows: Iterable[Row], growing: Mapping[str, Sequence[Any]]) -> None:
-    rows = list(rows)
+def _refuse_others(
+    folder: Path, rows: Sequence[Row], growing: Mapping[str, Sequence[Any] | Mapping[str, Row]]
+) -> None:
+    """Refuse a folder with rows of what is not asked for, or of another thing of the same name."""
     left_out = [
         f"{column} {', '.join(map(str, names))}"
         for column, named in growing.items()
@@ -183,6 +186,17 @@ def _refuse_a_part(folder: Path, rows: Iterable[Row], growing: Mapping[str, Sequ
     ]
     if left_out:
         problem = f"it also holds results of {' and '.join(left_out)}, which must be named too"
+        raise FolderError(folder, problem)
+    others = dict.fromkeys(
+        f"{column} {row[column]}: {name} {row.get(name)} there, {value} here"
+        for column, meant in growing.items()
+        if isinstance(meant, Mapping)
+        for row in rows
+        for name, value in meant[row[column]].items()
+        if row.get(name) != value
+    )
+    if others:
+        problem = f"it must be new, or hold results of the same ({'; '.join(others)})"
         raise FolderError(folder, problem)
 
 
@@ -212,8 +226,11 @@ def _going_on(journal: Journal, folder: Path, count: int) -> Iterator[None]:
         if not count:
             raise
         kept = f"{len(journal.kept)} of {count} rows are kept in {str(folder)!r}"
-        words = f"{stop}; " if str(stop) else ""
-        text = f"{words}{kept}; the same command goes on from there"
+        text = f"{kept}; the same command goes on from there"
+        if isinstance(stop, OSError) and stop.filename:
+            stop.strerror = f"{stop.strerror}; {text}"
+            raise
+        text = f"{stop}; {text}" if str(stop) else text
         if isinstance(stop, KeyboardInterrupt):
             stop.args = (text,)
             raise

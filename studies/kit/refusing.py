@@ -1,9 +1,12 @@
 """What a user is told beside the results: in one line, by streams that can be written to."""
 
+import errno
 import io
 import os
 import sys
+from collections.abc import Sequence
 from contextlib import suppress
+from pathlib import Path
 
 LONGEST_WORD, LONGEST_LINE = 255, 1000
 """Letters of a refusal beyond which the middle of a word, and of the line, is left out."""
@@ -29,6 +32,32 @@ def one_line(error: BaseException) -> str:
         return brief(f"{kind}: {error}".removesuffix(": "))
     except BaseException:
         return kind
+
+
+def reason(error: Exception, arguments: Sequence[str]) -> str:
+    """Return why a command could not go on; of a file or folder also the option that names it.
+
+    Parameters
+    ----------
+    error : Exception
+        Of the system, or one that was raised because of another.
+    arguments : sequence of str
+        Of the command line.
+    """
+    if not isinstance(error, OSError):
+        while isinstance(error.__cause__, Exception):
+            error = error.__cause__
+        return one_line(error)
+    if not error.filename:
+        full = error.errno == errno.ENOSPC
+        return f"the output cannot be written; {error.strerror}" if full else str(error)
+    option, place = "", Path(os.fsdecode(error.filename))
+    for word in arguments:
+        option, _, value = word.partition("=") if word.startswith("--") else (option, "", word)
+        if option and value and place.is_relative_to(value):
+            inside = "" if place == Path(value) else f"{place.relative_to(value)}: "
+            return f"{option} is {value!r}; {inside}{error.strerror}"
+    return str(error)
 
 
 def _shortened(text: str, longest: int) -> str:

@@ -82,7 +82,9 @@ def with_head(table: pd.DataFrame, folders: Iterable[str], name: str) -> pd.Data
     if len(table.columns):
         return table
     known = pd.read_csv(COLUMNS, keep_default_na=False)
-    mine = known["table"].isin([f"{each}/{name}.csv{end}" for each in folders for end in ("", PACKED)])
+    mine = known["table"].isin(
+        [f"{each}/{name}.csv{end}" for each in folders for end in ("", PACKED)]
+    )
     return pd.DataFrame(columns=known.loc[mine, "column"].drop_duplicates())
 
 

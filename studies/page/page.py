@@ -18,7 +18,7 @@ from engines import ENGINES
 from studies.cases.paper import PULSES
 from studies.catalogue import CHAPTERS
 from studies.defaults.study import INVALID, read
-from studies.drawing.figures import DPI, lay_out
+from studies.drawing.figures import lay_out, write_points
 from studies.kit import provenance
 from studies.kit.study import Chapter, Study
 from studies.kit.tables import SMALL, read_table
@@ -55,6 +55,7 @@ def write_page(path: Path, folder: Path, full: bool) -> None:
         chapters=[_section(*place, folder / place[1].folder, full) for place in CHAPTERS],
         made=_provenance(folder / CHAPTERS[0][1].folder),
         full=full,
+        shown=SHOWN,
         cases=engine_cases(folder),
         **first_sight(folder),
     )
@@ -119,7 +120,10 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
             for name, drawn in study.pictures(folder).items()
         ],
         "texts": [(path.stem, prose(path.read_text())) for path in sorted(folder.glob("*.txt"))],
-        "tables": [(name, *table(rows)) for name, rows in _tables(chapter, folder, study.load())],
+        "tables": [
+            (name, len(rows), *table(rows.head(SHOWN)))
+            for name, rows in _tables(chapter, folder, study.load())
+        ],
         "failures": failures(folder, study.table),
     }
 
@@ -127,13 +131,22 @@ def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[s
 def prose(text: str) -> list[tuple[bool, list[str]]]:
     """Return a text in parts, each with whether its lines are aligned as a table's."""
     lines = [line for line in text.splitlines() if line.strip()]
-    return [
+    parts = [
         (tabular, list(part))
         for tabular, part in itertools.groupby(lines, lambda line: "  " in line.strip())
     ]
+    return [
+        (tabular, [*part[: SHOWN + 1], f"and {len(part) - SHOWN - 1} more rows"])
+        if tabular and len(part) > SHOWN + 1
+        else (tabular, part)
+        for tabular, part in parts
+    ]
 
 
-LARGE = 150_000
+SHOWN = 20
+"""Rows of a table, lines of one in a text, and failures that are shown; files hold all of them."""
+
+LARGE = 100_000
 """Bytes up to which a figure is held as its lines; beyond, as points where that is less."""
 
 
@@ -143,7 +156,7 @@ def embedded(drawing: Figure) -> str:
     lay_out(drawing)
     drawing.savefig(lines, format="svg", metadata={"Date": None})
     if lines.tell() > LARGE:
-        drawing.savefig(points, format="png", dpi=DPI)
+        write_points(drawing, points)
     return (
         _address("png", points) if 0 < points.tell() < lines.tell() else _address("svg+xml", lines)
     )

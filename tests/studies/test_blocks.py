@@ -158,6 +158,32 @@ def test_a_scale_that_overflows_is_one_line(scale, place, capsys):
 ASKED = ["blocks", "list.csv", "--record", "X.AT2", "--out", "out"]
 
 
+@pytest.mark.parametrize(
+    ("file", "change", "named"),
+    [
+        ("list.csv", LIST.replace("A,0.5", "A,0.6"), "name A: width_m 0.5 there, 0.6 here"),
+        ("list.csv", LIST.replace("1.9,0.2", "1.9,"), "name B: friction 0.2 there, None here"),
+        ("list.csv", LIST.replace("0.3", "0.2"), "name C: tilt 0.3 there, 0.2 here"),
+        ("X.AT2", SHAKEN.scaled(-1.5), "record X.AT2: record_digest"),
+    ],
+)
+def test_a_used_folder_refuses_another_thing_of_the_same_name(file, change, named, place, capsys):
+    assert run(ASKED) == 0
+    before = {path: path.read_bytes() for path in (place / "out").glob("*.csv")}
+    if isinstance(change, str):
+        (place / file).write_text(change)
+    else:
+        write_record(place / file, change)
+    capsys.readouterr()
+    refused(capsys, ASKED, "--out is 'out'", named)
+    assert {path: path.read_bytes() for path in (place / "out").glob("*.csv")} == before
+    # what is new beside it is welcome
+    (place / "list.csv").write_text(LIST + "D,0.7,1.5,,\n")
+    write_record(place / "X.AT2", SHAKEN)
+    assert run(ASKED) == 0
+    assert read(place / "out")["name"].tolist() == ["A", "B", "C", "D"]
+
+
 @pytest.mark.parametrize(("width", "height"), [(0.5, 1.5), (0.4, 2.0), (1.0, 2.5)])
 def test_the_margin_is_the_first_factor_of_the_grid_that_overturns(width, height):
     """Solved one by one by `simulate`, another way to the same march."""
@@ -294,10 +320,12 @@ def test_names_are_what_they_are(place, capsys):
     assert (place / "out" / "blocks.png").read_bytes() == before
 
 
-def test_the_page_has_the_command_of_each_line(place, capsys):
+def test_the_page_has_the_command_of_each_line_which_works_anywhere(place, capsys, monkeypatch):
     asked = ["--record", "Y.AT2", "--scale", "0.5", "1.5", "--sources", "exact", "pymunk:naive"]
     run(["blocks", "list.csv", *asked, "--out", "out"])
     page = (place / "out" / "blocks.html").read_text()
+    (place / "elsewhere").mkdir()
+    monkeypatch.chdir(place / "elsewhere")
     commands = [html.unescape(words) for words in re.findall('data-copy="([^"]*)"', page)]
     rows = read(place / "out").set_index(["width_m", "source", "scale"])["peak_ratio"]
     assert len(commands) == 3

@@ -72,7 +72,7 @@ def test_a_disk_is_full_to_the_byte_or_in_the_middle_of_a_row(room, tmp_path):
     with open_journal(tmp_path, SUBJECT, ()) as journal:
         resource.setrlimit(resource.RLIMIT_FSIZE, (path.stat().st_size + room, most))
         try:
-            with pytest.raises(OSError, match="the disk is full"):
+            with pytest.raises(OSError, match=f"the disk is full: '{path}'"):
                 journal.append("another", ROWS["key 0"], MAKERS[0])
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, (usual, most))

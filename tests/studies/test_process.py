@@ -1,6 +1,7 @@
 """Processes: what is timed in them, and how they end, at signals, closed streams or few files."""
 
 import ast
+import errno
 import json
 import math
 import os
@@ -15,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commanding import BLOCK as SIZES
-from commanding import CASE, PATIENCE_S, python
+from commanding import CASE, PATIENCE_S, python, refused
 from given import BLOCK, FULL_SINE
 
 from analytic import SinePulse
@@ -23,6 +24,7 @@ from analytic.response import Response
 from studies.kit.executors import Local
 from studies.kit.jobs import Job, summary
 from studies.kit.pool import Pool
+from studies.kit.refusing import reason
 from studies.kit.runner import run_jobs
 from studies.sources.registry import SOURCES, Source
 
@@ -126,7 +128,9 @@ def test_output_that_cannot_be_written_is_one_line():
     with Path("/dev/full").open("w") as full:
         done = python("-m", "studies", *COMPARE, stdout=full)
     assert done.returncode == 2
-    assert done.stderr.splitlines() == ["rocking: [Errno 28] No space left on device"]
+    assert done.stderr.splitlines() == [
+        "rocking: the output cannot be written; No space left on device"
+    ]
 
 
 @pytest.mark.parametrize("count", [7, 13])
@@ -262,3 +266,42 @@ def test_settings_of_other_programs_change_nothing(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.count("\n") == 1
     assert plot.read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_cause_of_a_command_that_cannot_be_loaded_is_told(tmp_path):
+    hidden = "import sys; sys.modules['studies.cases.paper'] = None"
+    code = f"{hidden}; from studies.__main__ import main; main()"
+    done = python("-c", code, "sweep", "--out", tmp_path)
+    assert done.returncode == 2
+    assert (
+        done.stderr.startswith("rocking: ModuleNotFoundError: ") and "studies.cases" in done.stderr
+    )
+
+
+LONG = 256 * "x"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["sweep", "--figure", "6", "--sources", "exact", f"--out={LONG}"],
+        ["symptoms", "--engines", "mujoco", "--out", LONG],
+        ["report", "--out", LONG],
+    ],
+)
+def test_a_folder_of_too_long_a_name_is_refused_by_its_option(arguments, capsys):
+    refused(capsys, arguments, "--out is 'x", "File name too long")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--out", "a/b"], "--out is 'a/b'; c/d.csv: No space left on device"),
+        (["--out=a/b/c"], "--out is 'a/b/c'; d.csv: No space left on device"),
+        (["--record", "x", "a/b/c/d.csv"], "--record is 'a/b/c/d.csv'; No space left on device"),
+        (["--out", "elsewhere"], "[Errno 28] No space left on device: 'a/b/c/d.csv'"),
+    ],
+)
+def test_what_is_full_is_told_by_its_option(arguments, told):
+    full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "a/b/c/d.csv")
+    assert reason(full, ["sweep", *arguments]) == told

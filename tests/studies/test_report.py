@@ -22,11 +22,13 @@ from studies.page.page import AXES, engine_cases
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 SMALL = {
-    "sweep": ("--figure", "6", "--sources", "exact", "modified"),
+    "sweep": ("--figure", "6", "--sources", "exact", "modified", "rk4"),
     "defaults": ("--quick", "--sources", "pybullet:naive"),
     "histories": ("--figure", "4", "--sources", "exact", "moreau"),
 }
 """Chapters that are quickly made, and their arguments here."""
+FEW = 2
+"""Rows of a table that the page shows here."""
 
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
@@ -59,6 +61,7 @@ def made(tmp_path_factory):
         )
         patch.setattr(report, "CHAPTERS", few)
         patch.setattr(page, "CHAPTERS", few)
+        patch.setattr(page, "SHOWN", FEW)
         assert report.command(out=folder) == 0
     return folder
 
@@ -98,6 +101,16 @@ def test_the_page_says_what_the_tables_say(made):
     assert f"modified the fall wrong in {line.fall_wrong}." in text
     record = json.loads((made / "sweep" / "provenance.json").read_text())
     assert f"mujoco {record['engines']['mujoco']}" in text
+
+
+def test_the_page_shows_the_first_rows_of_a_table_and_says_where_all_are(made):
+    text = (made / "report.html").read_text()
+    bodies = re.findall('<div class="scroll".*?<tbody>(.*?)</tbody>', text, re.DOTALL)
+    assert max(body.count("<tr>") for body in bodies) == FEW
+    rows = len(pd.read_csv(made / "sweep" / "summary.csv"))
+    assert f"The first {FEW} of {rows} rows; all: sweep/summary.csv." in text
+    tabular = re.findall('<pre tabindex="0">(.*?)</pre>', text, re.DOTALL)
+    assert max(len(lines.splitlines()) for lines in tabular) == FEW + 2
 
 
 def test_a_picture_is_described_and_what_is_weaker_is_said(made):
