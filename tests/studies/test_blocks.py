@@ -332,6 +332,7 @@ def test_the_page_has_the_command_of_each_line_which_works_anywhere(place, capsy
     for command in commands:
         words = shlex.split(command)[2:]
         _, found = compared(capsys, *words)
+        assert found.keys() == {"exact", "pymunk:naive"}
         width = float(words[words.index("--width") + 1])
         for source, row in found.items():
             kept = rows[width, source, 0.5]

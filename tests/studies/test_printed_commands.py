@@ -1,12 +1,18 @@
 """The commands that pages print: each is taken as printed, and asks who answers in its tables."""
 
 import json
+import os
 import re
 import shlex
+import shutil
+import subprocess
 import tomllib
+import venv
+from importlib import metadata
 
 import pytest
 from commanding import PROSE, ROOT, refused
+from packaging.requirements import Requirement
 
 from analytic import MODELS
 from engines import ENGINES
@@ -93,6 +99,53 @@ def test_a_command_of_the_readme_works_as_printed(command, tmp_path, monkeypatch
         assert capsys.readouterr().out
     else:
         taken(arguments)
+
+
+def needed(name, extras, known):
+    """Add to the known distributions those that one needs, with some of its extras."""
+    if name not in known:
+        known[name] = metadata.distribution(name)
+        for asked in map(Requirement, known[name].requires or ()):
+            on = asked.marker is None or any(
+                asked.marker.evaluate({"extra": extra}) for extra in ("", *extras)
+            )
+            if on:
+                needed(asked.name, tuple(asked.extras), known)
+    return known
+
+
+def environment(folder, *extras):
+    """Return the Python of an environment into which the packages of the project are linked."""
+    venv.create(folder, symlinks=True)
+    (site,) = folder.glob("lib/python*/site-packages")
+    found = needed("rocking", extras, {})
+    del found["rocking"]
+    for package in found.values():
+        for top in {file.parts[0] for file in package.files} - {"..", "__pycache__"}:
+            if not (site / top).exists():
+                (site / top).symlink_to(package.locate_file(top))
+    return folder / "bin" / "python"
+
+
+@pytest.mark.slow
+@pytest.mark.processes
+@pytest.mark.parametrize("command", commands("README.md"))
+def test_a_command_of_the_readme_runs_to_its_end_with_the_core_packages_alone(command, tmp_path):
+    """The example of `score` is of pymunk, which the line above it installs."""
+    _, *arguments = shlex.split(command)
+    interpreter = environment(tmp_path / "core", *["pymunk"] * (arguments[0] == "score"))
+    (tmp_path / "studies").symlink_to(ROOT / "studies")
+    shutil.copy(ROOT / "tests" / "plugin" / "my_engine.py", tmp_path)
+    done = subprocess.run(
+        [interpreter, "-m", "studies", *arguments],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode in (0, 1) and "Traceback" not in done.stderr, done.stderr
+    assert done.stdout
+    assert arguments[0] != "report" or (tmp_path / "DIR" / "report.html").is_file()
 
 
 @pytest.mark.parametrize("name", PROSE)
