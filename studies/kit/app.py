@@ -75,9 +75,9 @@ def run(studies: Sequence[Study], arguments: list[str]) -> int:
     except (ArithmeticError, MemoryError, ValueError) as error:
         if REFUSAL.match(str(error)):
             return refusing.refuse(str(error))
-        # any other ValueError is an error of the program
-        if type(error) is ValueError and str(error) != "math domain error":
-            raise
+        domain = str(error) == "math domain error" or type(error).__name__ == "LinAlgError"
+        if isinstance(error, ValueError) and not domain:
+            raise  # an error of the program
         words = "the numbers given are too small, too large or too many to compute with"
         return refusing.refuse(f"{words} ({refusing.one_line(error)})")
     return code

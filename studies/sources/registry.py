@@ -226,7 +226,7 @@ def resolve(name: str) -> Source:
         raise UnknownSourceError(f"source is {name!r}{near}; it must be one of {allowed()}")
     if colon and preset not in presets_of(source):
         able = [f"{plain}:{own}" for own in presets_of(source)]
-        words = f"one of {', '.join(able)}" if able else f"{plain} alone, which is no engine"
+        words = f"one of {', '.join(able)}" if able else f"{plain!r}, for only engines have presets"
         raise UnknownSourceError(f"source is {name!r}{perhaps(name, able)}; it must be {words}")
     if not colon:
         return replace(source, name=name)

@@ -78,11 +78,17 @@ def test_every_source_answers_figure_5b(name):
     assert response.steps > 0
 
 
-def test_an_unknown_source_is_refused_with_the_list():
-    for name in ("nonsense", "exact:fixed", "mujoco:", "mujoco:best", ":fixed"):
-        with pytest.raises(UnknownSourceError, match="mujoco") as error:
-            respond(name, BLOCK, FULL_SINE)
-        assert repr(name) in str(error.value)
+@pytest.mark.parametrize(
+    ("name", "allowed"),
+    [
+        *((name, "mujoco") for name in ("nonsense", "mujoco:", "mujoco:best", ":fixed")),
+        ("exact:fixed", "must be 'exact'"),
+    ],
+)
+def test_an_unknown_source_is_refused_with_what_is_allowed(name, allowed):
+    with pytest.raises(UnknownSourceError, match=allowed) as error:
+        respond(name, BLOCK, FULL_SINE)
+    assert repr(name) in str(error.value)
 
 
 def test_options_reach_the_source():
