@@ -5,6 +5,8 @@ velocities hold: what it misses of the exact one is of the second order in the s
 block has another inertia, another size or another gravity.
 """
 
+from __future__ import annotations
+
 import math
 from typing import cast
 
