@@ -71,7 +71,7 @@ def test_an_error_that_does_not_shrink_with_the_step_is_a_wrong_quantity(wrong, 
     pytest.importorskip("pymunk")
     table = moments_of(announce(f"wrong:{wrong}"))
     errors = table[["turn_error", "turn_error_half"]].to_numpy()
-    assert errors == pytest.approx(QUANTITIES.get(wrong, 0.0346), abs=5e-4)
+    assert errors == pytest.approx(QUANTITIES.get(wrong, 0.0221), abs=5e-4)
     said = suspicion(table)
     assert said.startswith("Wrong quantity: wrong:fixed and wrong:landing.")
     assert f"{abs(errors[0, 0]):.2%}" in said
@@ -93,7 +93,7 @@ NO_WORLDS = {
     "NoFault": "has no method fault",
     "NoClose": "has no method close",
     "NoMoment": "has no moment; it must be one of Moment.MIDDLE, END and NEXT",
-    "Turned": "theta -0.161 of a block put to 0.161: the sign is wrong",
+    "Turned": "theta -0.0804 of a block put to 0.0804: the sign is wrong",
     "Backwards": "rate -0.0982 of a block put to 0.0982: the sign is wrong",
     "Mirrored": "pulled towards +x, its block turns to theta -0.0256: the sign is wrong",
 }
