@@ -4,25 +4,28 @@ What code does when it is imported ends, stops or silences the process that impo
 of its own, and never the one that judges, which ends with its own exit code.
 """
 
+import copyreg
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import MISSING, dataclass, field, fields, make_dataclass
+from dataclasses import MISSING, dataclass, field, fields, make_dataclass, replace
 from importlib import import_module
 from operator import attrgetter
+from types import MappingProxyType
 from typing import Any
 
 from engines import ENGINES, registry
-from engines.declaration import Engine, Preset
+from engines.declaration import Engine
 from engines.parts.settings import check
 from engines.registry import UnloadableError
 from studies.kit.fingerprint import PACKAGES, Name, files_elsewhere, names_of
 from studies.kit.pool import Pool, StartError, TaskError
 
+# the settings of a scene are one
+copyreg.dispatch_table[MappingProxyType] = lambda it: (dict, (dict(it),))
+
 LOADING_S = 60.0
 """How long an engine of another package may take to be loaded [s]."""
-PLAIN = (type(None), bool, int, float, str, tuple)
-"""Values of settings that are kept as they are; of others it is their words."""
 
 
 @contextmanager
@@ -37,9 +40,10 @@ def kept_out() -> Iterator[None]:
 
 def declared(name: str) -> Engine:
     """Return an engine as a process of its own declares it; UnloadableError if it cannot."""
-    found: tuple[Engine, dict[str, str]] = apart(_declared_here, name)
-    files_elsewhere.update(found[1])
-    return found[0]
+    engine: Engine
+    engine, files = apart(_declared_here, name)
+    files_elsewhere.update(files)
+    return engine
 
 
 def apart(call: Callable[..., Any], engine: str, *given: Any) -> Any:
@@ -67,67 +71,51 @@ def _tried(call: Callable[..., Any], *given: Any) -> tuple[Any, str]:
         return None, str(error)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Call:
-    """A function of an engine, which is loaded in the process that calls it, or in one apart.
+    """What an engine declares by some name and can be called, in a process of its own.
 
-    Attributes
-    ----------
-    engine : str
-    path : tuple
-        Where it is declared: attributes, and keys of mappings.
-    definitions : frozenset
-        Those that it stands in; see `studies.kit.fingerprint.names_of`.
+    The definitions that it stands in are those of `studies.kit.fingerprint.names_of`.
     """
 
     engine: str
-    path: tuple[Any, ...]
+    name: str
     definitions: frozenset[Name]
 
     def __call__(self, *given: Any) -> Any:
         """Call it; UnloadableError as of `apart`."""
-        if registry.elsewhere:
-            return apart(_called_here, self.engine, self.path, *given)
-        return _called_here(self.engine, self.path, *given)
+        return apart(_called_here, self.engine, self.name, *given)
 
 
-def _called_here(engine: str, path: Iterable[Any], *given: Any) -> Any:
-    found: Any = registry.loaded(engine)
-    for part in path:
-        found = getattr(found, part) if isinstance(part, str) else found[part]
-    return found(*(item.loaded() if hasattr(item, "loaded") else item for item in given))
+def _called_here(engine: str, name: str, *given: Any) -> Any:
+    call = getattr(registry.loaded(engine), name)
+    return call(*(item.loaded() if hasattr(item, "loaded") else item for item in given))
 
 
 def _declared_here(name: str) -> tuple[Engine, dict[str, str]]:
     """Return an engine as plain data, and the files of the modules that were loaded for it."""
-    engine = _plain(ENGINES[name])
-    files = {name: getattr(module, "__file__", None) for name, module in sys.modules.items()}
-    return engine, {name: file for name, file in files.items() if isinstance(file, str)}
+    engine = ENGINES[name]
 
+    def call(what: Callable[..., Any], name: str = "") -> Call:
+        return Call(engine.name, name, frozenset(names_of(what)))
 
-def _plain(engine: Engine) -> Engine:
-    said = {item.name: getattr(engine, item.name) for item in fields(Engine)}
-    for name in ("build", "script", "spring"):
-        said[name] = said[name] and _call(engine, said[name], name)
-    said["builders"] = _calls(engine, engine.builders, "builders")
-    said["own_step"] = ""  # it would be imported
-    said["presets"] = tuple(
-        Preset(
-            **{item.name: getattr(preset, item.name) for item in fields(Preset)}
-            | {"settings": _settings(preset.settings)}
-            | {"builders": _calls(engine, preset.builders, "presets", number, "builders")}
-        )
-        for number, preset in enumerate(engine.presets)
+    def calls(builders: Mapping[Any, Any]) -> dict[Any, Any]:
+        return {key: call(build) for key, build in builders.items()}
+
+    plain = replace(
+        engine,
+        build=call(engine.build, "build"),
+        script=engine.script and call(engine.script, "script"),
+        spring=engine.spring and call(engine.spring, "spring"),
+        builders=calls(engine.builders),
+        own_step="",  # it would be imported
+        presets=tuple(
+            replace(each, settings=_settings(each.settings), builders=calls(each.builders))
+            for each in engine.presets
+        ),
     )
-    return Engine(**said)
-
-
-def _call(engine: Engine, call: Callable[..., Any], *path: Any) -> Call:
-    return Call(engine=engine.name, path=path, definitions=frozenset(names_of(call)))
-
-
-def _calls(engine: Engine, builders: Mapping[Any, Any], *path: Any) -> dict[Any, Call]:
-    return {key: _call(engine, build, *path, key) for key, build in builders.items()}
+    files = {name: getattr(module, "__file__", None) for name, module in sys.modules.items()}
+    return plain, {name: file for name, file in files.items() if isinstance(file, str)}
 
 
 def _settings(settings: Any) -> Any:
@@ -135,36 +123,33 @@ def _settings(settings: Any) -> Any:
     kind = type(settings)
     if kind.__module__.partition(".")[0] in PACKAGES:
         return settings
-    described = []
-    for item in fields(settings):
-        default, value = (
-            part if isinstance(part, PLAIN) or part is MISSING else str(part)
-            for part in (item.default, getattr(settings, item.name))
+    described = [
+        (
+            *(item.name, None if item.default is MISSING else item.default),
+            *(item.metadata.get("allowed"), getattr(settings, item.name)),
         )
-        described.append((item.name, default, item.metadata.get("allowed"), value))
+        for item in fields(settings)
+    ]
     return alike(kind.__module__, kind.__qualname__, described)
 
 
-def alike(module: str, name: str, described: Sequence[tuple[str, Any, Any, Any]]) -> Any:
+def alike(module: str, name: str, described: list[tuple[str, Any, Any, Any]]) -> Any:
     """Return settings that are called, and checked, as those of a class that is not loaded here.
 
-    Parameters
-    ----------
-    module, name : str
-        Where the class stands.
-    described : sequence
-        Name, default, what is `engines.parts.settings.Allowed` and the value of each setting.
+    They are described by their names, defaults, what is `engines.parts.settings.Allowed`, and
+    values.
     """
     items = [
         (item, Any, field(default=default, metadata={"allowed": allowed} if allowed else {}))
         for item, default, allowed, _ in described
     ]
+
+    def again(it: Any) -> tuple[Any, ...]:
+        return alike, (module, name, [(*row[:3], getattr(it, row[0])) for row in described])
+
     does = {
         "__post_init__": check,
-        "__reduce__": lambda it: (
-            alike,
-            (module, name, [(*row[:3], getattr(it, row[0])) for row in described]),
-        ),
+        "__reduce__": again,
         "loaded": lambda it: attrgetter(name)(import_module(module))(**vars(it)),
     }
     made = make_dataclass(name, items, namespace=does, frozen=True, kw_only=True)

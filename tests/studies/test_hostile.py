@@ -4,7 +4,7 @@ import math
 import os
 import sys
 import time
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from functools import partial
 from pathlib import Path
 
@@ -144,7 +144,9 @@ def test_an_engine_that_was_announced_and_cannot_be_loaded_is_a_line(source, tmp
 
 def test_an_engine_is_declared_where_its_code_is_not_loaded(announced):
     text = Path(rocking_moreau.__file__).read_text()
-    Path("mine.py").write_text(text.replace('name="moreau"', 'name="mine"'))
+    words = "lambda scene, it, dt_s: (scene.system, type(it).__module__, it.closing)"
+    own = f'name="mine", spring=lambda time, step: {{"friction": time}}, script={words}'
+    Path("mine.py").write_text(text.replace('name="moreau"', own))
     with foreign.kept_out():
         name = score.known("mine:ENGINE")
         told, asked = ENGINES[name], partial(Job, labels={}, block=BLOCK, motion=PULSE)
@@ -152,6 +154,9 @@ def test_an_engine_is_declared_where_its_code_is_not_loaded(announced):
         made = Makers(ask, summary).of(asked(source="mine:fixed"))
         with pytest.raises(BadInputError, match="friction is -1"):
             asked(source="mine:fixed", options={"settings": {"friction": -1.0}})
+        assert told.spring(2.0, 1.0) == {"friction": 2.0}
+        scene = Scene(system=BLOCK, motion=PULSE)
+        assert told.script(scene, told.best.settings, 1e-3) == (BLOCK, "mine", True)
     assert name == "mine"
     assert "mine" not in sys.modules
     assert "mine.py" in code.keys() & made.keys()
@@ -163,7 +168,8 @@ def test_an_engine_is_declared_where_its_code_is_not_loaded(announced):
         assert asdict(here.settings) == asdict(there.settings)
         same = {item.name for item in fields(here)} - {"settings"}
         assert all(repr(getattr(here, item)) == repr(getattr(there, item)) for item in same)
-    assert simulate_scene(told) == simulate_scene(declared)
+    there = replace(told, build=declared.build)
+    assert simulate_scene(there) == simulate_scene(declared)
 
 
 def simulate_scene(engine):

@@ -147,6 +147,25 @@ def test_the_page(alone, few, tmp_path, capsys):
     assert peaks["6/half-sine/0.05/2/0.5/0.1"] == again.outcome.value == "overturned"
 
 
+@pytest.mark.slow
+def test_the_example_of_the_readme_ends_with_0(alone, tmp_path, monkeypatch):
+    """A block thrown about before a slow pulse can lift it lands on its impacts for ever."""
+    pytest.importorskip("pymunk")
+    everything = score.score_jobs
+    case = {"figure": 7, "aspect": 4, "width_m": 0.5, "omega_over_p": 0.1}
+
+    def and_that_case(name, quick):
+        slow = [job for job in everything(name, False) if case.items() <= job.labels.items()]
+        return [*everything(name, quick), *(j for j in slow if j.labels["table"] == score.SWEEP)]
+
+    monkeypatch.setattr(score, "score_jobs", and_that_case)
+    assert run(["score", MINE, "--quick", "--out", str(tmp_path)]) == 0
+    rows = pd.read_csv(tmp_path / "score-sweep.csv")
+    slow = rows[rows["figure"] == 7]
+    assert [*slow["source"]] == ["my_engine:fixed", "my_engine:landing"]
+    assert set(slow["outcome"]) == {"overturned"}
+
+
 def test_one_preset_of_an_engine_is_scored_alone(few, tmp_path, capsys):
     pytest.importorskip("pymunk")
     kept, out = tmp_path / "kept.json", tmp_path / "out"
