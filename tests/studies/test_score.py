@@ -167,18 +167,17 @@ def test_the_example_of_the_readme_ends_with_0(alone, tmp_path, monkeypatch):
 
 
 def test_one_preset_of_an_engine_is_scored_alone(few, tmp_path, capsys):
-    pytest.importorskip("pymunk")
     kept, out = tmp_path / "kept.json", tmp_path / "out"
-    asked = ("score", "pymunk:fixed", "--quick", "--out", str(out), "--json", str(kept))
+    asked = ("score", "mujoco:fixed", "--quick", "--out", str(out), "--json", str(kept))
     assert run([*asked, "--require", "outcomes=2", "fixed:failed=0"]) == 0
     page = capsys.readouterr().out
     assert "holds: fixed:outcomes must be at least 2" in page
     result = json.loads(kept.read_text())
     assert (result["engine"], [*result["presets"]], [*result["peaks"]]) == (
-        *("pymunk", ["fixed"], ["fixed"]),
+        *("mujoco", ["fixed"], ["fixed"]),
     )
     refused(capsys, [*asked, "--require", "landing:failed=0"], "--require", "fixed and a colon")
-    refused(capsys, ["score", "pymunk", "--quick", "--out", out], "same study and settings")
+    refused(capsys, ["score", "mujoco", "--quick", "--out", out], "same study and settings")
 
 
 @pytest.mark.slow
