@@ -2,6 +2,7 @@
 
 import inspect
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
@@ -83,9 +84,9 @@ def named(place: str) -> str:
     ValueError
         If neither stands there.
     """
-    module, _, attribute = place.partition(":")
-    if not (module and attribute) or any(mark in place for mark in "= \t\n"):
+    if not re.fullmatch(r"[\w.]+:[\w.]+", place):
         raise ValueError(f"engine {place!r} is no place; it must be like my_package.mine:ENGINE")
+    module = place.partition(":")[0]
     found = _found(place, EntryPoint(module, place, GROUP))
     if not isinstance(found, Engine):
         _refuse_other_than_builder(place, found)

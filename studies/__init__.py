@@ -128,6 +128,7 @@ def side_by_side(
     """
     import pandas as pd
 
+    from analytic.checks import finite
     from studies.compare.records import records
     from studies.compare.study import compare, in_this_process, window_of
     from studies.kit.arguments import BadInputError
@@ -137,6 +138,13 @@ def side_by_side(
     if isinstance(sources, str) or not (sources := list(sources)):
         raise ValueError(f"sources is {sources!r}; it must be a list of one name or more")
     try:
+        given = {"duration": duration, "friction": friction, "dt": dt}
+        duration, friction, dt = (
+            None if value is None else finite(name, value) for name, value in given.items()
+        )
+        if len(start) != 2:
+            raise ValueError(f"start is {start!r}; it must be theta [rad] and theta' [rad/s]")
+        start = (finite("start", start[0]), finite("start", start[1]))
         window = window_of(block, motion, duration)
         refuse_endless(block, window, duration=duration, dt=dt)
         rows = compare(

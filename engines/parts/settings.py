@@ -70,6 +70,8 @@ def check(settings: Any) -> None:
     """
     for item in fields(settings):
         allowed, value = item.metadata.get("allowed"), getattr(settings, item.name)
+        if hasattr(value, "item"):  # a number of NumPy, which is not written as one of Python is
+            object.__setattr__(settings, item.name, value := value.item())
         if allowed is None:
             continue
         together = {item.name: value, **{n: getattr(settings, n) for n in allowed.beside}}

@@ -152,11 +152,11 @@ def _asked(engine: str, preset: str | None) -> tuple[Engine, Preset]:
 
 def _check_folder(out: Path) -> None:
     try:
-        empty = not out.exists() or not any(out.iterdir())
-    except OSError:
-        empty = False
-    if not empty:
-        raise BadInputError(f"--out is {str(out)!r}; it must be a new or an empty folder")
+        why = " (it is not empty)" if out.exists() and any(out.iterdir()) else ""
+    except OSError as error:
+        why = f" ({error.strerror})"
+    if why:
+        raise BadInputError(f"--out is {str(out)!r}; it must be a new or an empty folder{why}")
 
 
 CALLED = {

@@ -138,7 +138,9 @@ class Excitation:
     def _recorded(self, path: Path) -> Record:
         refuse_both(scale=self.scale, pga=self.pga)
         record = read_record(path, self.units, self.baseline)
-        with as_bad_input("--record: "):
+        factor = "" if self.scale is None else f" times --scale {self.scale:g}"
+        peak = "" if self.pga is None else f" scaled to --pga {self.pga:g}"
+        with as_bad_input(f"--record{factor}{peak}: "):
             if self.pga is not None:
                 return record.scaled_to(self.pga * GRAVITY)
             return record.scaled(1.0 if self.scale is None else self.scale)

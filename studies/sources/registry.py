@@ -222,7 +222,9 @@ def resolve(name: str) -> Source:
     plain, colon, preset = name.partition(":")
     source = SOURCES.get(plain)
     if source is None:
-        near = perhaps(name, [f"{known}{colon}{preset}" for known in SOURCES])
+        like = [known for known in SOURCES if perhaps(plain, [known])]
+        ends = [colon + preset if preset in presets_of(SOURCES[known]) else "" for known in like]
+        near = perhaps(name, [known + end for known, end in zip(like, ends, strict=True)])
         raise UnknownSourceError(f"source is {name!r}{near}; it must be one of {allowed()}")
     if colon and preset not in presets_of(source):
         able = [f"{plain}:{own}" for own in presets_of(source)]

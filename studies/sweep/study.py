@@ -115,7 +115,7 @@ def report(folder: Path) -> str:
 
 def finding(folder: Path) -> str:
     """Say what each preset of the engines gets wrong, and how far peaks are off."""
-    return f"{capital(posed(read(folder)).words)}. {finding_of(whole(folder))}"
+    return f"{capital(posed(read(folder)).words)}. {finding_of(whole(folder))}".rstrip()
 
 
 def read(folder: Path) -> pd.DataFrame:
@@ -139,7 +139,7 @@ def finding_of(lines: pd.DataFrame) -> str:
     parts = _ends(preset_table(lines))
     models = [f"{row['source']} {in_kinds(row)}" for _, row in linearized(lines).iterrows()]
     parts += [f"by linearization: {'; '.join(models)}"] if models else []
-    return capital("; ".join(parts)) + "."
+    return capital("; ".join(parts)) + "." if parts else ""
 
 
 def _ends(table: pd.DataFrame) -> list[str]:

@@ -70,8 +70,11 @@ compare CASE --sources mujoco:best | --sources | 'mujoco:best' | naive
 compare CASE --sources mujoco:fixd | 'mujoco:fixd', perhaps 'mujoco:fixed'; it must be one of mujoco
 compare CASE --sources mujuco | 'mujuco', perhaps 'mujoco'; it must be one of exact
 compare CASE --sources MuJoCo:fixed | 'MuJoCo:fixed', perhaps 'mujoco:fixed'
+compare CASE --sources :fixed | source is ':fixed'; it must be one of exact
+compare CASE --sources hausner:fixed | source is 'hausner:fixed'; it must be one of exact
+compare CASE --sources pybulet:fixd | perhaps 'pybullet'; it must
 compare CASE --sources box2d:error-controlled | must be one of box2d:naive, box2d:
-compare CASE --sources exact:fixed | 'exact:fixed'; it must be exact alone
+compare CASE --sources exact:fixed | 'exact:fixed'; it must be 'exact'
 contact --out DIR --engines mujuco | --engines is 'mujuco', perhaps 'mujoco'
 export CASE --out DIR --engine mujuco:fixed | perhaps 'mujoco'
 score mujuco --out DIR | ENGINE is 'mujuco', perhaps 'mujoco'
@@ -111,6 +114,8 @@ compare BLOCK --record X.AT2 --omega 3 | --omega is 3.0; it may be given only wi
 compare BLOCK --record X.AT2 --pulse half-sine | --pulse is half-sine | without --record
 compare BLOCK --record X.AT2 --half-cycles 2 | --half-cycles is 2 | without --record
 compare BLOCK --record X.AT2 --scale 2 --pga 1 | --scale is 2 and --pga is 1; give one or the other
+compare BLOCK --record X.AT2 --scale 1e308 | --record times --scale 1e+308 | finite
+compare BLOCK --record X.AT2 --pga 1e308 | --record scaled to --pga 1e+308 | finite
 compare BLOCK --record X.AT2 --scale -2 | --scale is '-2'; it must be a positive
 compare BLOCK --record X.AT2 --units ft | --units is 'ft'
 compare BLOCK --record X.AT2 --duration 0.01 | length of the motion, 0.03 s

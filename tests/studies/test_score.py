@@ -75,6 +75,7 @@ def test_an_engine_that_is_announced_makes_no_row_stale(alone, tmp_path, capsys)
         ("no_such_module:ENGINE", "No module named 'no_such_module'"),
         ("my_engine:Wheel", "has no attribute 'Wheel'"),
         (":World", "it must be like my_package.mine:ENGINE"),
+        ("my_engine:World:World", "it must be like my_package.mine:ENGINE"),
         ("my engine:World", "it must be like my_package.mine:ENGINE"),
         ("rocking_moreau:ENGINE", "is called 'moreau', as another is"),
         ("rocking_moreau:SLACK", "is neither a declaration nor what builds a world"),

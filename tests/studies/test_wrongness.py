@@ -112,6 +112,7 @@ def test_a_sweep_says_the_kinds_and_how_many_problems_its_cases_are():
     assert asked.words == "6 cases are 4 problems, in up to 2 sizes, at 1.1 times the onset"
     assert said in sweep.finding_of(many)
     assert f"housner {words}." in sweep.finding_of(lines.assign(source="housner"))
+    assert sweep.finding_of(lines.assign(source="exact")) == ""
 
 
 def test_cases_that_are_alike_by_similarity_are_one_problem():

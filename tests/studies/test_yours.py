@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 from commanding import CASE, compared
@@ -124,11 +125,37 @@ def test_side_by_side_is_what_compare_tells(capsys):
         ({"sources": ["rk4"], "friction": 1.0}, "^friction is 1; it must come with an engine"),
         ({"sources": ["mujoco"], "friction": math.nan}, "friction is nan; it must be a finite"),
         ({"sources": ["exact"], "duration": 0.1}, "^duration is 0.1; it must be at least"),
+        ({"sources": ["rk4"], "dt": math.nan}, "^dt is nan; it must be a finite number"),
+        ({"sources": ["exact"], "duration": math.nan}, "^duration is nan; it must be a finite"),
+        ({"sources": ["exact"], "start": (math.nan, 0.0)}, "^start is nan; it must be a finite"),
+        ({"sources": ["exact"], "start": (0.1, 0.0, 0.0)}, "^start is .* must be theta"),
     ],
 )
 def test_side_by_side_refuses_what_cannot_be(options, problem):
     with pytest.raises(ValueError, match=problem):
         side_by_side(BLOCK, PULSE, **options)
+
+
+@pytest.mark.parametrize("option", ["friction", "dt", "duration", "start"])
+def test_side_by_side_takes_numbers_of_any_type(option):
+    def peak(value):
+        given = {option: (value, 0.0) if option == "start" else value}
+        return side_by_side(BLOCK, PULSE, ["mujoco:naive"], **given)["peak_ratio"].item()
+
+    value = np.float32({"duration": 2.7, "dt": 0.0021}.get(option, 0.3))
+    assert peak(value) == peak(float(value))
+
+
+@pytest.mark.parametrize("source", ["mujoco:fixed", "drake:fixed"])
+def test_a_setting_takes_a_number_of_any_type(source):
+    if not ENGINES[source.partition(":")[0]].installed:
+        pytest.skip("not installed")
+    value = np.float32(0.83)
+    told = [
+        respond(source, BLOCK, PULSE, step=0.05, settings={"friction": number})
+        for number in (value, np.float64(value), float(value))
+    ]
+    assert len({response.peak_ratio for response in told}) == 1
 
 
 def test_the_guide_s_python_runs_as_a_script_of_one_s_own(tmp_path):
