@@ -181,7 +181,7 @@ def sorted_rows(
     """
     valid: dict[str, Row] = {}
     stale = []
-    for job in jobs:
+    for job in jobs if kept else ():  # a key takes a tenth of a millisecond
         key = job.key
         if key not in kept:
             continue

@@ -27,7 +27,7 @@ LOADING_S = 300.0
 """How long a process may take to load what a task needs [s]."""
 ENDING_S = 5.0
 """How long a process may take to end what it has started [s]."""
-MEMORY_BYTES = 4e9
+MEMORY_BYTES = 2e9
 """What a process may take beside what it begins with [byte]; only Linux keeps it to that."""
 
 

@@ -80,13 +80,14 @@ class Source:
         """
         if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
-        taken = inspect.signature(self.call).parameters
         if getattr(self.call, "func", None) is run_engine:
             asked = {**options, "duration": duration, "times": times}
             self.used.chosen(scene_of(block, motion, self.preset, **asked))
-        elif all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
-            for name in options:
-                one_of("option", name, [name for name in taken if name not in NOT_OPTIONS])
+        elif options:
+            taken = inspect.signature(self.call).parameters
+            if all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
+                for name in options:
+                    one_of("option", name, [name for name in taken if name not in NOT_OPTIONS])
 
     @property
     def declared(self) -> Engine:
