@@ -212,7 +212,7 @@ def test_no_page_from_an_edited_table(published, capsys):
 def test_whatever_is_checked_comes_with_an_installation():
     project = tomllib.loads((PUBLISHED.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))
     packed = set(project["tool"]["setuptools"]["package-data"]["studies"])
-    data = {"GUIDE.md", "measures/columns.csv"}
+    data = {"GUIDE.md", "measures/columns.csv", "published/columns.csv"}
     read = {*TABLES, RANDOM, *SYMPTOMS, score.LADDER, str(halving.FACTORS.relative_to(PUBLISHED))}
     beside = {f"{name.partition('/')[0]}/provenance.json" for name in read}
     assert {f"published/{name}" for name in read | beside} | data == packed
