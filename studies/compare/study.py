@@ -96,6 +96,7 @@ def command(
     if standing.scene == "slide" and sources == DEFAULT_SOURCES:
         sources = OF_A_SLIDE
     refuse_both(dt=yours.dt, step=effort.step)
+    effort.refuse_idle(sources)
     words = "a block requires its full width and height [m]"
     width, height = required(words, width=width, height=height)
     if not standing.rocks:

@@ -72,6 +72,7 @@ def command(
     asked = f"--cases is {cases}, --tests {tests}"
     running.refuse_too_much(asked, cases + tests, everyone, yes=yes, effort=effort)
     refuse_both(dt=yours.dt, step=effort.step)
+    effort.refuse_idle(sources)
     own = {name: value for name, value in asdict(yours).items() if value is not None}
     own |= {} if scene == "block" else {"scene": scene}
     jobs = []

@@ -232,6 +232,17 @@ class EffortOptions(Effort):
     step: Step | None = None
     accuracy: Annotated[Accuracy, one_of(Accuracy)] | None = None
 
+    def refuse_idle(self, sources: Sequence[str]) -> None:
+        """Raise BadInputError if an option is given that none of the sources takes."""
+        asked = [resolve(name) for name in sources]
+        takers = {
+            "step": ("a solver or an engine", any(source.stepping for source in asked)),
+            "accuracy": ("an engine that chooses its steps", any(it.accurate for it in asked)),
+        }
+        for name, (words, taken) in takers.items():
+            if (value := getattr(self, name)) is not None and not taken:
+                raise BadInputError(f"--{name} is {value}; --sources must name {words}")
+
 
 OWN_EFFORT = EffortOptions()
 """Every source as finely as it sees fit."""

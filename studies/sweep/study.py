@@ -47,6 +47,7 @@ def command(
         Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by default.
     """
     refuse_repeats("--figure", figure)
+    effort.refuse_idle(sources)
     return carry_out(STUDY, plan(figure, sources, effort), out, running, report)
 
 

@@ -72,6 +72,7 @@ def command(
         Run every engine at half the step, too: the relative difference of the two peaks, and how
         many of the errors it bounds, times the published factor (`rocking estimate`).
     """
+    effort.refuse_idle(sources)
     # the exact solution is asked, too, whether a case is kept
     everyone = ("exact", *(3 if estimate else 1) * sources)
     running.refuse_too_much(f"--cases is {cases}", cases, everyone, yes=yes, effort=effort)

@@ -75,6 +75,10 @@ compare CASE --sources hausner:fixed | source is 'hausner:fixed'; it must be one
 compare CASE --sources pybulet:fixd | perhaps 'pybullet'; it must
 compare CASE --sources box2d:error-controlled | must be one of box2d:naive, box2d:
 compare CASE --sources exact:fixed | 'exact:fixed'; it must be 'exact'
+compare CASE --sources exact --step 0.1 | --step is 0.1 | a solver or an engine
+compare CASE --sources mujoco:fixed --accuracy tight | --accuracy is tight | chooses its steps
+sweep --sources housner --accuracy tight --out DIR | --accuracy is tight | chooses its steps
+validate --sources exact --step 0.1 --out DIR | --step is 0.1 | a solver or an engine
 contact --out DIR --engines mujuco | --engines is 'mujuco', perhaps 'mujoco'
 export CASE --out DIR --engine mujuco:fixed | perhaps 'mujoco'
 score mujuco --out DIR | ENGINE is 'mujuco', perhaps 'mujoco'
