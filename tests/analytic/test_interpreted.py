@@ -180,6 +180,6 @@ def test_what_python_refuses_is_left_to_compiled_code(purse):
 
 
 def test_few_cases_are_interpreted_and_many_are_not():
-    kernel = compiled.Kernel(abs, compiled.SOURCES, True, None)
+    kernel = compiled.Kernel(abs, compiled.SOURCES, None)
     assert compiled.form_for(1, kernel) is kernel
     assert compiled.form_for(10_000, kernel) == kernel.run

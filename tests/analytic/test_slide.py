@@ -101,7 +101,7 @@ def test_below_and_above_mu_g():
 @given(
     st.integers(0, 10**6),
     st.floats(0.05, 0.5),
-    st.floats(-1.0, 1.0),
+    st.floats(-1.0, 1.0).map(lambda v: round(v, 6)),  # below 1e-150 a start is refused
     st.booleans(),
 )
 def test_any_motion_against_stepping(seed, friction, v, smooth):

@@ -64,7 +64,7 @@ def test_a_study_in_which_nothing_answers_says_so(name, tmp_path, monkeypatch, c
     if name in DRAWN_FROM_ANSWERS:
         pytest.skip("without an answer it draws nothing")
     monkeypatch.setattr(Image, "save", full)
-    words = ("No space left on device", f"{tmp_path}/", ".png'")
+    words = (f"--out is '{tmp_path}'", ".png: No space left on device")
     refused(capsys, command_line(name, tmp_path), *words)
     assert not list(tmp_path.glob(".part*"))
 
