@@ -207,7 +207,7 @@ def write_points(drawing: Figure, file: BinaryIO) -> None:
     few.save(file, "png", optimize=True, dpi=(DPI, DPI))
 
 
-def save_all(drawings: Mapping[str, Figure], folder: Path, suffix: str = ".png") -> list[Path]:
+def save_all(drawings: Mapping[str, Figure], folder: Path) -> list[Path]:
     """Write the figures of a study under their names into its folder; return the files.
 
     Parameters
@@ -215,15 +215,13 @@ def save_all(drawings: Mapping[str, Figure], folder: Path, suffix: str = ".png")
     drawings : mapping
         Name of a file without suffix -> figure.
     folder : Path
-    suffix : str, optional
-        With its dot; as for `save`.
 
     Returns
     -------
     list of Path
         In the order of the figures.
     """
-    paths = [folder / f"{name}{suffix}" for name in drawings]
+    paths = [folder / f"{name}.png" for name in drawings]
     for drawing, path in zip(drawings.values(), paths, strict=True):
         save(drawing, path)
     return paths
