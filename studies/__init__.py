@@ -131,9 +131,9 @@ def side_by_side(
     from analytic.checks import finite
     from studies.compare.records import records
     from studies.compare.study import compare, in_this_process, window_of
-    from studies.kit.arguments import BadInputError
-    from studies.kit.options import Yours
-    from studies.kit.posing import Posed, refuse_endless
+    from studies.old.arguments import BadInputError
+    from studies.old.options import Yours
+    from studies.old.posing import Posed, refuse_endless
 
     if isinstance(sources, str) or not (sources := list(sources)):
         raise ValueError(f"sources is {sources!r}; it must be a list of one name or more")

@@ -23,7 +23,7 @@ from studies import (
     validate,
     validity,
 )
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDIES: tuple[Study, ...] = (
     *(advise.STUDY, compare.STUDY, blocks.STUDY, animate.STUDY, export.STUDY, sweep.STUDY),

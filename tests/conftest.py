@@ -1,6 +1,5 @@
 """Fixtures of more than one file of tests."""
 
-from collections import Counter
 from contextlib import nullcontext
 
 import pytest
@@ -8,7 +7,6 @@ import pytest
 from engines import registry
 from studies.kit import foreign
 from studies.kit.jobs import Job
-from studies.score import study as score
 from studies.sources.registry import SOURCES
 
 
@@ -31,25 +29,3 @@ def alone(monkeypatch):
     registry._declared.cache_clear()
     SOURCES.clear()
     SOURCES.update(kept)
-
-
-def some_of(jobs):
-    """Return two jobs of each table and preset: the first, on which all is well, and another."""
-    seen = Counter()
-    for job in jobs:
-        seen[key := (job.labels["table"], job.source)] += 1
-        if seen[key] in (1, 4):
-            yield job
-
-
-@pytest.fixture
-def few(monkeypatch):
-    """Let a score ask two jobs of each table and preset; give what returns these of an engine."""
-    everything = score.score_jobs
-
-    def chosen(*asked):
-        return list(some_of(everything(*asked)))
-
-    monkeypatch.setattr(score, "score_jobs", chosen)
-    monkeypatch.setattr(score, "answer", lambda case, job, source, limit: score.plain(job, source))
-    return chosen

@@ -15,7 +15,7 @@ from distributed import Client
 from given import BLOCK, FULL_SINE
 
 from analytic import simulate
-from studies.kit.jobs import Job
+from studies.old.jobs import Job
 
 HERE = Path(__file__).parent
 KNOWN = os.pathsep.join(map(str, (HERE, HERE / "plugin", HERE.parent)))

@@ -1,6 +1,6 @@
 """Which setting of which engine for which accuracy."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="advise",

@@ -22,7 +22,7 @@ from studies.advise.evidence import (
     random_runs,
     settings,
 )
-from studies.kit.journal import Row
+from studies.old.journal import Row
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.finer import cheapest_kept
 from studies.measures.presets import uses_of

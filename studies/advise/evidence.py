@@ -13,8 +13,8 @@ import pandas as pd
 from engines import ENGINES
 from engines.declaration import Preset
 from studies.cases.paper import sweep_cases
-from studies.kit.journal import Row
-from studies.kit.tables import read_table
+from studies.old.journal import Row
+from studies.old.tables import read_table
 from studies.measures.differences import (
     WELL_CONDITIONED,
     conditioning_of,

@@ -15,12 +15,12 @@ from studies.advise.choice import TARGETS
 from studies.advise.evidence import SETTING, counted, judged, options_at, settings
 from studies.cases.drawn import RandomCase, draw
 from studies.drawing.kept import tell
-from studies.kit.arguments import BadInputError, Count, Out, Positive
-from studies.kit.jobs import Job
-from studies.kit.naming import CORE, Engines
-from studies.kit.options import CASE_BYTES, DEFAULT_RUNNING, Running, refuse_excess
-from studies.kit.plan import Plan, carry_out
-from studies.kit.tables import table_in
+from studies.old.arguments import BadInputError, Count, Out, Positive
+from studies.old.jobs import Job
+from studies.old.naming import CORE, Engines
+from studies.old.options import CASE_BYTES, DEFAULT_RUNNING, Running, refuse_excess
+from studies.old.plan import Plan, carry_out
+from studies.old.tables import table_in
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.finer import with_every_finer
 from studies.measures.published import PUBLISHED

@@ -16,8 +16,8 @@ from studies.advise.choice import TARGETS, advice
 from studies.advise.evidence import LADDER, TABLES, aspects, published_engines, read_from
 from studies.advise.words import ASK, finding, kept_errors, reverse_text, settings_text, tables
 from studies.drawing.kept import WIDTH, as_text, keep
-from studies.kit import provenance
-from studies.kit.arguments import (
+from studies.old import provenance
+from studies.old.arguments import (
     NotNegative,
     Place,
     Positive,
@@ -26,10 +26,10 @@ from studies.kit.arguments import (
     refuse_repeats,
     several,
 )
-from studies.kit.naming import Engines
-from studies.kit.options import DEFAULT_RUNNING, check_written
-from studies.kit.plan import Plan, carry_out
-from studies.kit.standing import Height, Width, posed_block
+from studies.old.naming import Engines
+from studies.old.options import DEFAULT_RUNNING, check_written
+from studies.old.plan import Plan, carry_out
+from studies.old.standing import Height, Width, posed_block
 from studies.measures.costs import OUTDATED, STEPPED
 from studies.measures.published import published_in, too_slippery
 from studies.measures.words import listed

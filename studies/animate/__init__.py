@@ -1,6 +1,6 @@
 """A block, a frame or a slide in several sources side by side, as a film."""
 
-from studies.kit.study import Study
+from studies.old.study import Study
 
 STUDY = Study(
     name="animate",

@@ -15,16 +15,16 @@ from analytic.response import Outcome
 from analytic.slide import SlidingBlock
 from engines.layouts import System
 from studies.cases.paper import Case, free_rocking_window
-from studies.kit.arguments import BadInputError, Place, Positive, refuse_given, required
-from studies.kit.executors import Executor
-from studies.kit.jobs import Job, summary
-from studies.kit.journal import Row
-from studies.kit.naming import Sources
-from studies.kit.options import DEFAULT_COMPUTING, NOT_YOURS, Computing, Yours
-from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
-from studies.kit.provenance import check
-from studies.kit.runner import exit_code, run_jobs
-from studies.kit.standing import ONE_BLOCK, Height, Standing, Width
+from studies.old.arguments import BadInputError, Place, Positive, refuse_given, required
+from studies.old.executors import Executor
+from studies.old.jobs import Job, summary
+from studies.old.journal import Row
+from studies.old.naming import Sources
+from studies.old.options import DEFAULT_COMPUTING, NOT_YOURS, Computing, Yours
+from studies.old.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
+from studies.old.provenance import check
+from studies.old.runner import exit_code, run_jobs
+from studies.old.standing import ONE_BLOCK, Height, Standing, Width
 from studies.sources.registry import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())

@@ -1,6 +1,6 @@
 """A list of blocks under records: which overturn, and how much stronger a record they bear."""
 
-from studies.kit.study import Study
+from studies.old.study import Study
 
 STUDY = Study(
     name="blocks",

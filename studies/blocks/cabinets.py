@@ -12,7 +12,7 @@ from analytic.accelerograms.text import lines_of, number, shown
 from analytic.block import RigidBlock
 from analytic.slide import SlidingBlock
 from studies.cases.refusal import BadInputError
-from studies.kit.standing import MOST_M
+from studies.old.standing import MOST_M
 
 COLUMNS = ("name", "width", "height", "friction", "tilt")
 NEEDED = COLUMNS[:3]

@@ -16,8 +16,8 @@ from jinja2 import Environment, PackageLoader
 from analytic.response import Outcome
 from studies.blocks import STUDY, strength
 from studies.drawing.kept import tell
-from studies.kit import provenance
-from studies.kit.tables import quoted, unquoted
+from studies.old import provenance
+from studies.old.tables import quoted, unquoted
 from studies.measures.words import capital, listed, out_of
 from studies.sources.registry import resolve
 

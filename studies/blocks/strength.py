@@ -18,7 +18,7 @@ from analytic.conditioning import scaled
 from analytic.record import Record
 from analytic.response import Outcome
 from analytic.simulate import simulate, strongest
-from studies.kit.provenance import usable_cores
+from studies.old.provenance import usable_cores
 
 APART = 0.01
 """Relative distance of two factors; of a block that starts off rest, up to the onset, over it."""

@@ -26,7 +26,7 @@ from studies.blocks.report import SLIDES, SLIDES_FIRST, finding, report
 from studies.blocks.strength import UndecidedError, strength
 from studies.cases.accelerograms import Baseline, Units, baseline_note, recorded
 from studies.cases.paper import free_rocking_window
-from studies.kit.arguments import (
+from studies.old.arguments import (
     BadInputError,
     Out,
     Place,
@@ -36,12 +36,12 @@ from studies.kit.arguments import (
     refuse_repeats,
     several,
 )
-from studies.kit.jobs import Job, plain, summary
-from studies.kit.journal import Row
-from studies.kit.naming import Sources
-from studies.kit.options import DEFAULT_RUNNING, Running
-from studies.kit.plan import Plan, Tables, carry_out
-from studies.kit.posing import refuse_endless
+from studies.old.jobs import Job, plain, summary
+from studies.old.journal import Row
+from studies.old.naming import Sources
+from studies.old.options import DEFAULT_RUNNING, Running
+from studies.old.plan import Plan, Tables, carry_out
+from studies.old.posing import refuse_endless
 from studies.measures.differences import conditioning_of_one
 from studies.sources.registry import resolve
 

@@ -1,6 +1,6 @@
 """One block, one motion, every source side by side."""
 
-from studies.kit.study import Study
+from studies.old.study import Study
 
 STUDY = Study(
     name="compare",

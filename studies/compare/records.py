@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from studies.compare.rendering import valid
-from studies.kit.journal import Row
+from studies.old.journal import Row
 
 SHARED = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
 BESIDE = ("error", "velocity_ratio", "impact_error")

@@ -19,8 +19,8 @@ from analytic.slide import SlidingBlock
 from engines.layouts import BEAM_DEPTH, SPACING, System
 from engines.run.drive import LAG
 from studies.cases.paper import PULSES
-from studies.kit.journal import Row
-from studies.kit.posing import Posed
+from studies.old.journal import Row
+from studies.old.posing import Posed
 from studies.measures.differences import scientific
 from studies.measures.halving import NO_BOUND
 from studies.measures.samples import samples

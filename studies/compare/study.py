@@ -20,7 +20,7 @@ from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import free_rocking_window
 from studies.compare.records import as_lines, records
 from studies.compare.rendering import draw, table_text
-from studies.kit.arguments import (
+from studies.old.arguments import (
     BadInputError,
     Place,
     Positive,
@@ -29,11 +29,11 @@ from studies.kit.arguments import (
     refuse_given,
     required,
 )
-from studies.kit.executors import Answers, Executor
-from studies.kit.jobs import Job, ask, summary
-from studies.kit.journal import Row
-from studies.kit.naming import Sources
-from studies.kit.options import (
+from studies.old.executors import Answers, Executor
+from studies.old.jobs import Job, ask, summary
+from studies.old.journal import Row
+from studies.old.naming import Sources
+from studies.old.options import (
     DEFAULT_COMPUTING,
     NOT_YOURS,
     OWN_EFFORT,
@@ -42,11 +42,11 @@ from studies.kit.options import (
     Yours,
     slides,
 )
-from studies.kit.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
-from studies.kit.refusing import say
-from studies.kit.runner import exit_code, run_jobs
-from studies.kit.standing import ONE_BLOCK, WHERE_IT_ROCKS, Height, Standing, Width
-from studies.kit.unusual import unusual
+from studies.old.posing import DEFAULT_EXCITATION, Excitation, Posed, refuse_endless
+from studies.old.refusing import say
+from studies.old.runner import exit_code, run_jobs
+from studies.old.standing import ONE_BLOCK, WHERE_IT_ROCKS, Height, Standing, Width
+from studies.old.unusual import unusual
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import OF_A_PEAK, OF_BLOCKS, halved, with_estimates
 from studies.sources.registry import DEFAULT_EFFORT, Effort, core_sources

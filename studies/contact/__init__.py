@@ -1,6 +1,6 @@
 """Contact models: what each setting costs and buys."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="contact",

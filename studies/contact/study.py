@@ -31,13 +31,13 @@ from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.cases.variants import Variant, preset_values, variants
 from studies.contact import STUDY
 from studies.drawing.kept import tell
-from studies.kit.arguments import BadInputError, Out, one_of
-from studies.kit.jobs import Job, summary
-from studies.kit.journal import Row
-from studies.kit.naming import CORE, Engines
-from studies.kit.options import DEFAULT_RUNNING, Running
-from studies.kit.plan import Plan, carry_out
-from studies.kit.tables import write_table
+from studies.old.arguments import BadInputError, Out, one_of
+from studies.old.jobs import Job, summary
+from studies.old.journal import Row
+from studies.old.naming import CORE, Engines
+from studies.old.options import DEFAULT_RUNNING, Running
+from studies.old.plan import Plan, carry_out
+from studies.old.tables import write_table
 from studies.measures.differences import (
     WELL_CONDITIONED,
     with_reference,

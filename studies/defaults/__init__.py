@@ -1,6 +1,6 @@
 """Engines as documented, over the plane of pulses and two sizes of a block."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="defaults",

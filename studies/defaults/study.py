@@ -19,12 +19,12 @@ from studies.cases.paper import PULSES
 from studies.defaults import STUDY
 from studies.drawing.kept import tell
 from studies.drawing.styles import engine_title
-from studies.kit.arguments import Out
-from studies.kit.jobs import Job
-from studies.kit.naming import Sources
-from studies.kit.options import DEFAULT_RUNNING, Running
-from studies.kit.plan import Plan, carry_out
-from studies.kit.tables import write_table
+from studies.old.arguments import Out
+from studies.old.jobs import Job
+from studies.old.naming import Sources
+from studies.old.options import DEFAULT_RUNNING, Running
+from studies.old.plan import Plan, carry_out
+from studies.old.tables import write_table
 from studies.measures.words import listed, part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, kinds_of
 from studies.sources.registry import core_sources, resolve

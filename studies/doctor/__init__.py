@@ -1,6 +1,6 @@
 """What is here, and whether it works."""
 
-from studies.kit.study import Study
+from studies.old.study import Study
 
 STUDY = Study(
     name="doctor",

@@ -16,16 +16,16 @@ from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from engines.parts.compiled import PACKAGE
 from studies.cases.paper import HISTORIES
-from studies.kit.arguments import TimeLimit
-from studies.kit.jobs import Job
-from studies.kit.options import Computing
-from studies.kit.provenance import (
+from studies.old.arguments import TimeLimit
+from studies.old.jobs import Job
+from studies.old.options import Computing
+from studies.old.provenance import (
     NUMERICAL_PACKAGES,
     project_version,
     usable_cores,
     version_of,
 )
-from studies.kit.refusing import brief
+from studies.old.refusing import brief
 from studies.measures.differences import scientific
 from studies.measures.verdicts import relative_error
 from studies.sources.registry import Source

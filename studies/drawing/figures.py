@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from studies.drawing.styles import LOWEST, Style, line_of, name_of, style_of
-from studies.kit.drafts import draft
+from studies.kit.tables import draft
 
 OVERTURNED = "overturned"
 DPI = 130
@@ -189,7 +189,7 @@ def save(drawing: Figure, path: Path) -> None:
     """
     drawing.set_dpi(DPI)
     lay_out(drawing)
-    with draft(path) as file:
+    with draft(path) as part, part.open("wb") as file:
         if path.suffix != ".png":
             drawing.savefig(file, format=path.suffix[1:], dpi=DPI)
             return

@@ -22,9 +22,9 @@ from analytic.response import Outcome
 from engines.layouts import System, layout_of
 from studies.drawing.block import outlines
 from studies.drawing.styles import line_of, style_of
-from studies.kit.arguments import BadInputError, check_writable
-from studies.kit.drafts import draft_place
-from studies.kit.journal import Row
+from studies.old.arguments import BadInputError, check_writable
+from studies.old.drafts import draft_place
+from studies.old.journal import Row
 
 HELD_S = 1.5
 """How long a film stays at its end [s], where its verdicts are read."""

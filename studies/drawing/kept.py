@@ -7,9 +7,9 @@ from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, TypeAlias
 
-from studies.kit.provenance import write_text
-from studies.kit.study import Study
-from studies.kit.tables import in_columns
+from studies.old.provenance import write_text
+from studies.old.study import Study
+from studies.old.tables import in_columns
 
 if TYPE_CHECKING:
     import pandas as pd

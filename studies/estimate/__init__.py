@@ -1,6 +1,6 @@
 """How far off an answer is, without the exact one."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="estimate",

@@ -16,10 +16,10 @@ from analytic.response import Outcome
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.drawing.kept import tell
 from studies.estimate import STUDY
-from studies.kit.arguments import BadInputError, Count, Out, Yes, one_of, refuse_both
-from studies.kit.jobs import Job
-from studies.kit.naming import Sources
-from studies.kit.options import (
+from studies.old.arguments import BadInputError, Count, Out, Yes, one_of, refuse_both
+from studies.old.jobs import Job
+from studies.old.naming import Sources
+from studies.old.options import (
     DEFAULT_RUNNING,
     NOT_YOURS,
     OWN_EFFORT,
@@ -27,8 +27,8 @@ from studies.kit.options import (
     Running,
     Yours,
 )
-from studies.kit.plan import Plan, carry_out
-from studies.kit.tables import write_table
+from studies.old.plan import Plan, carry_out
+from studies.old.tables import write_table
 from studies.measures.differences import with_reference, with_reference_of_frames
 from studies.measures.halving import BOUNDED, MOST_TRUSTED, NO_BOUND, estimates_of, halved
 from studies.measures.words import alike, listed, out_of, part

@@ -1,6 +1,6 @@
 """A scene written out for an engine alone."""
 
-from studies.kit.study import Study
+from studies.old.study import Study
 
 STUDY = Study(
     name="export",

@@ -20,16 +20,16 @@ from engines.run import ground
 from engines.scene import perhaps
 from engines.watching.sliding import LEAST_SLIP, SLIP_RATE
 from studies.cases.paper import free_rocking_window
-from studies.kit.arguments import BadInputError, Place, Step, TimeLimit, refuse_both
-from studies.kit.drafts import draft_place
-from studies.kit.executors import Local
-from studies.kit.jobs import Job, summary
-from studies.kit.journal import Row
-from studies.kit.options import NOT_YOURS, Yours
-from studies.kit.posing import DEFAULT_EXCITATION, Excitation, refuse_endless
-from studies.kit.provenance import project_version, version_of
-from studies.kit.runner import exit_code, run_jobs
-from studies.kit.standing import ONE_BLOCK, Height, Standing, Width
+from studies.old.arguments import BadInputError, Place, Step, TimeLimit, refuse_both
+from studies.old.drafts import draft_place
+from studies.old.executors import Local
+from studies.old.jobs import Job, summary
+from studies.old.journal import Row
+from studies.old.options import NOT_YOURS, Yours
+from studies.old.posing import DEFAULT_EXCITATION, Excitation, refuse_endless
+from studies.old.provenance import project_version, version_of
+from studies.old.runner import exit_code, run_jobs
+from studies.old.standing import ONE_BLOCK, Height, Standing, Width
 from studies.measures.words import listed
 
 

@@ -1,6 +1,6 @@
 """The paper's time histories, figures 2, 4 and 5."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="histories",

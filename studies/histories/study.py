@@ -15,14 +15,14 @@ from analytic.response import Outcome, Response
 from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
 from studies.drawing.kept import Pictures, as_text
 from studies.histories import STUDY
-from studies.kit.arguments import Out, figures, refuse_repeats
-from studies.kit.jobs import Job, summary
-from studies.kit.journal import Row
-from studies.kit.naming import sources_option
-from studies.kit.options import DEFAULT_RUNNING, Running
-from studies.kit.plan import Plan, Tables, blaming_its_rows, fill
-from studies.kit.provenance import seal, write_text
-from studies.kit.runner import exit_code
+from studies.old.arguments import Out, figures, refuse_repeats
+from studies.old.jobs import Job, summary
+from studies.old.journal import Row
+from studies.old.naming import sources_option
+from studies.old.options import DEFAULT_RUNNING, Running
+from studies.old.plan import Plan, Tables, blaming_its_rows, fill
+from studies.old.provenance import seal, write_text
+from studies.old.runner import exit_code
 from studies.measures.claims import TABLE, Finding, claim, read_findings, tally, write_findings
 from studies.measures.samples import samples
 

@@ -1,1 +1,1 @@
-"""A study's machinery: jobs, runner, executors, journal, provenance, the command line's pieces."""
+"""What every study shares: its declaration, its jobs and workers, its store, its options."""

@@ -5,32 +5,115 @@ What takes time to import is imported inside functions, so that a signal meanwhi
 
 from __future__ import annotations
 
+import gc
 import itertools
 import os
 import re
 import shutil
 import signal
 import sys
+import threading
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from studies.kit import refusing, signals
+from studies.kit import say
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from cyclopts import App, UnknownOptionError
 
-    from studies.kit.study import Study
+RETIRED = {
+    **dict.fromkeys(("ensemble", "free", "harmonic", "literature", "redraw", "throughput"), ""),
+    "cost": "precision",
+    "defaults": "overturning --sources engines:naive",
+    "estimate": "validate --halves",
+    "steps": "validate",
+    "symptoms": "advise",
+    "validity": "overturning",
+    "versions": "score --against",
+}
+"""Commands that answer for one release that they are gone, and what does their work."""
+PLACES = {"report": "page.report", "readme": "page.readme"}
+"""Command -> its module, where that has another name."""
+REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
+"""A refusal of a value, whoever finds it: "width is 0; it must be positive"."""
+LIKENESS = 0.7
+"""How like an option must be to be named as what was meant, its dashes left aside."""
+NARROWEST, WIDEST = 40, 200
+"""Columns of a terminal for which help is set; in two or in ten million it takes for ever."""
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
-RETIRED = ("ensemble", "free", "harmonic", "literature", "redraw", "throughput", "versions")
-"""Commands that answer for one release that they are gone."""
+def main(commands: Mapping[str, str]) -> None:
+    """Run the command that the arguments name, and exit.
+
+    Parameters
+    ----------
+    commands : mapping
+        Name of a command -> what it is for, in a line; its module of `studies` has its function.
+    """
+    for number in ENDING:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, _end)
+    sys.unraisablehook = _on_lost
+    gc.set_threshold(10_000)  # else a tenth of a short command's time goes into garbage collection
+    for name in ("MPLBACKEND", "NUMBA_NUM_THREADS"):  # what would stop a library
+        os.environ.pop(name, None)
+    columns = shutil.get_terminal_size().columns
+    os.environ["COLUMNS"] = str(min(max(columns, NARROWEST), WIDEST))
+    say.prepare_streams()
+    code = run(commands, sys.argv[1:])
+    for number in ENDING:
+        signal.signal(number, signal.SIG_IGN)
+    say.flush()
+    sys.exit(code)
 
 
-def make_app(studies: Sequence[Study]) -> App:
-    """Return the command line with these commands, each loaded when it is asked for."""
+def _end(number: int, _: Any) -> None:
+    raise KeyboardInterrupt(number)
+
+
+def _on_lost(lost: sys.UnraisableHookArgs) -> None:
+    """Raise again an interruption that a destructor or a callback of the compiler swallows."""
+    if isinstance(lost.exc_value, KeyboardInterrupt):
+        threading.Timer(0.02, os.kill, [os.getpid(), signal.SIGINT]).start()
+    else:
+        sys.__unraisablehook__(lost)
+
+
+def run(commands: Mapping[str, str], arguments: list[str]) -> int:
+    """Run one command; return its exit code: 0 usable, 1 some rows failed, 2 bad input."""
+    try:
+        code = _answer(commands, arguments)
+        sys.stdout.flush()
+    except KeyboardInterrupt as stop:
+        words = [each for each in stop.args if isinstance(each, str)]
+        number = next((each for each in stop.args if isinstance(each, int)), signal.SIGINT)
+        kind = "interrupted" if number == signal.SIGINT else signal.Signals(number).name
+        say.say("; ".join([f"rocking: {kind}", *words]))
+        return 128 + number
+    except (BrokenPipeError, SystemExit) as stop:
+        # what sets the help makes another of it
+        if BrokenPipeError not in (type(stop), type(stop.__context__)):
+            raise
+        say.give_up_output()  # whoever read the output has gone
+        return 128 + signal.SIGPIPE
+    except (OSError, ImportError) as error:
+        return say.refuse(say.reason(error, arguments))
+    except (ArithmeticError, MemoryError, ValueError) as error:
+        if REFUSAL.match(str(error)):
+            return say.refuse(str(error))
+        domain = str(error) == "math domain error" or type(error).__name__ == "LinAlgError"
+        if isinstance(error, ValueError) and not domain:
+            raise  # an error of the program
+        words = "the numbers given are too small, too large or too many to compute with"
+        return say.refuse(f"{words} ({say.one_line(error)})")
+    return code
+
+
+def make_app(commands: Mapping[str, str], chosen: str = "") -> App:
+    """Return the command line; the chosen command is loaded, others when they are asked for."""
     from cyclopts import App, Parameter
 
     app = App(
@@ -42,72 +125,42 @@ def make_app(studies: Sequence[Study]) -> App:
         default_parameter=Parameter(negative=()),
         suppress_keyboard_interrupt=False,
     )
-    for study in studies:
-        app.command(f"{study.module}:command", name=study.name, help=study.about)
+    for name, purpose in commands.items():
+        module = f"studies.{PLACES.get(name, name)}"
+        if name == chosen:
+            app.command(import_module(module).command, name=name)
+        else:
+            app.command(f"{module}:command", name=name, help=purpose)
     return app
 
 
 def _version() -> str:
-    from studies.kit.provenance import project_version
+    from studies.kit.store import project_version
 
     return project_version()
 
 
-def run(studies: Sequence[Study], arguments: list[str]) -> int:
-    """Run one command; return its exit code: 0 usable, 1 some rows failed, 2 bad input."""
-    try:
-        code = _answer(studies, arguments)
-        sys.stdout.flush()
-    except KeyboardInterrupt as stop:
-        number = stop.number if isinstance(stop, signals.Ended) else signal.SIGINT
-        kind = "interrupted" if number == signal.SIGINT else signal.Signals(number).name
-        refusing.say(f"rocking: {kind}; {stop}".rstrip("; "))
-        return 128 + number
-    except (BrokenPipeError, SystemExit) as stop:
-        # what sets the help makes another of it
-        if BrokenPipeError not in (type(stop), type(stop.__context__)):
-            raise
-        # whoever read the output has gone: nothing more can be said there, not even on exit
-        refusing.give_up_output()
-        return 128 + signal.SIGPIPE
-    except (OSError, ImportError) as error:
-        return refusing.refuse(refusing.reason(error, arguments))
-    except (ArithmeticError, MemoryError, ValueError) as error:
-        if REFUSAL.match(str(error)):
-            return refusing.refuse(str(error))
-        domain = str(error) == "math domain error" or type(error).__name__ == "LinAlgError"
-        if isinstance(error, ValueError) and not domain:
-            raise  # an error of the program
-        words = "the numbers given are too small, too large or too many to compute with"
-        return refusing.refuse(f"{words} ({refusing.one_line(error)})")
-    return code
-
-
-REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
-"""A refusal of a value, whoever finds it: "width is 0; it must be positive"."""
-
-
-def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
+def _answer(commands: Mapping[str, str], arguments: Sequence[str]) -> int:
     from cyclopts import CycloptsError, UnknownOptionError
-
-    from studies.kit import foreign
-    from studies.kit.arguments import BadInputError
-    from studies.kit.journal import FolderError
 
     sys.modules.setdefault("pandas", Postponed("pandas"))
     if "--version" in arguments and len(arguments) > 1:
-        return refusing.refuse(
-            f"--version is one of {len(arguments)} arguments; it must stand alone"
-        )
+        words = f"--version is one of {len(arguments)} arguments; it must stand alone"
+        return say.refuse(words)
     if arguments and arguments[0] in RETIRED:
-        return refusing.refuse(f"{arguments[0]} was retired in 0.3, see the changelog")
+        instead = RETIRED[arguments[0]]
+        words = f"use {instead}" if instead else "see the changelog"
+        return say.refuse(f"{arguments[0]} was retired in 0.3; {words}")
     for before, argument in itertools.pairwise(["COMMAND", *arguments]):
         name, equals, value = argument.partition("=")
         if not argument.strip() or (name.startswith("--") and equals and not value.strip()):
-            return refusing.refuse(f"{name.strip() or before} is empty; it must be given")
+            return say.refuse(f"{name.strip() or before} is empty; it must be given")
+    from studies.cases.refusal import BadInputError
+    from studies.kit import foreign
+
     try:
         with foreign.kept_out():
-            code = make_app(studies)(
+            code = make_app(commands, arguments[0] if arguments else "")(
                 arguments,
                 exit_on_error=False,
                 print_error=False,
@@ -115,9 +168,9 @@ def _answer(studies: Sequence[Study], arguments: list[str]) -> int:
                 result_action="return_value",
             )
     except UnknownOptionError as error:
-        return refusing.refuse(_unknown_option(error))
-    except (CycloptsError, BadInputError, FolderError) as error:
-        return refusing.refuse(str(error))
+        return say.refuse(_unknown_option(error))
+    except (CycloptsError, BadInputError) as error:
+        return say.refuse(str(error))
     return code if isinstance(code, int) else 0
 
 
@@ -136,10 +189,6 @@ def _unknown_option(error: UnknownOptionError) -> str:
     return f"{given} is no option of {command or 'rocking'}; {able}"
 
 
-LIKENESS = 0.7
-"""How like an option must be to be named as what was meant, its dashes left aside."""
-
-
 class Postponed(ModuleType):
     """Stands for a module until an attribute of it is asked for.
 
@@ -155,18 +204,3 @@ class Postponed(ModuleType):
         loaded = import_module(name)
         self.__dict__.update(loaded.__dict__)
         return getattr(loaded, attribute)
-
-
-NARROWEST, WIDEST = 40, 200
-"""Columns of a terminal for which help is set; in two or in ten million it takes for ever."""
-
-
-def settle_environment() -> None:
-    """Take away from libraries what would stop them and has no part here.
-
-    No figure opens a window, and no kernel uses numba's own threads.
-    """
-    for name in ("MPLBACKEND", "NUMBA_NUM_THREADS"):
-        os.environ.pop(name, None)
-    columns = shutil.get_terminal_size().columns
-    os.environ["COLUMNS"] = str(min(max(columns, NARROWEST), WIDEST))

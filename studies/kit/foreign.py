@@ -6,11 +6,12 @@ of its own, and never the one that judges, which ends with its own exit code.
 
 import copyreg
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import MISSING, dataclass, field, fields, make_dataclass, replace
 from importlib import import_module
 from operator import attrgetter
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -18,12 +19,12 @@ from engines import ENGINES, registry
 from engines.declaration import Engine
 from engines.parts.settings import check
 from engines.registry import UnloadableError
-from studies.kit.fingerprint import PACKAGES, Name, files_elsewhere, names_of
-from studies.kit.pool import Pool, StartError, TaskError
+from studies.kit.workers import Lost, answers
 
 # the settings of a scene are one
 copyreg.dispatch_table[MappingProxyType] = lambda it: (dict, (dict(it),))
 
+PACKAGES = ("analytic", "engines", "studies")
 LOADING_S = 60.0
 """How long an engine of another package may take to be loaded [s]."""
 
@@ -40,9 +41,7 @@ def kept_out() -> Iterator[None]:
 
 def declared(name: str) -> Engine:
     """Return an engine as a process of its own declares it; UnloadableError if it cannot."""
-    engine: Engine
-    engine, files = apart(_declared_here, name)
-    files_elsewhere.update(files)
+    engine: Engine = apart(_declared_here, name)
     return engine
 
 
@@ -54,11 +53,10 @@ def apart(call: Callable[..., Any], engine: str, *given: Any) -> Any:
     UnloadableError
         If it raises, or its process ends or takes longer than `LOADING_S`.
     """
-    with Pool(1) as pool:
-        try:
-            found, problem = pool.schedule(_tried, (call, engine, *given), LOADING_S).result()
-        except (TaskError, StartError) as error:
-            found, problem = None, f"engine {engine!r} cannot be loaded: {error}"
+    ((_, answer),) = answers(_tried, [(call, engine, *given)], 1, LOADING_S)
+    found, problem = answer if not isinstance(answer, Lost) else (None, answer.why)
+    if isinstance(answer, Lost):
+        problem = f"engine {engine!r} cannot be loaded: {problem}"
     if problem:
         raise UnloadableError(problem)
     return found
@@ -75,12 +73,12 @@ def _tried(call: Callable[..., Any], *given: Any) -> tuple[Any, str]:
 class Call:
     """What an engine declares by some name and can be called, in a process of its own.
 
-    The definitions that it stands in are those of `studies.kit.fingerprint.names_of`.
+    Its code stands in `files`.
     """
 
     engine: str
     name: str
-    definitions: frozenset[Name]
+    files: tuple[Path, ...]
 
     def __call__(self, *given: Any) -> Any:
         """Call it; UnloadableError as of `apart`."""
@@ -92,30 +90,40 @@ def _called_here(engine: str, name: str, *given: Any) -> Any:
     return call(*(item.loaded() if hasattr(item, "loaded") else item for item in given))
 
 
-def _declared_here(name: str) -> tuple[Engine, dict[str, str]]:
-    """Return an engine as plain data, and the files of the modules that were loaded for it."""
+def _declared_here(name: str) -> Engine:
+    """Return an engine as plain data."""
     engine = ENGINES[name]
+    tops = {_top(what) for what in (engine.build, *engine.builders.values())} - {*PACKAGES}
+    loaded = [
+        getattr(module, "__file__", None)
+        for module_name, module in list(sys.modules.items())
+        if module_name.partition(".")[0] in tops
+    ]
+    files = tuple(sorted(Path(file) for file in loaded if isinstance(file, str)))
 
-    def call(what: Callable[..., Any], name: str = "") -> Call:
-        return Call(engine.name, name, frozenset(names_of(what)))
+    def call(name: str = "") -> Call:
+        return Call(engine.name, name, files)
 
-    def calls(builders: Mapping[Any, Any]) -> dict[Any, Any]:
-        return {key: call(build) for key, build in builders.items()}
-
-    plain = replace(
+    return replace(
         engine,
-        build=call(engine.build, "build"),
-        script=engine.script and call(engine.script, "script"),
-        spring=engine.spring and call(engine.spring, "spring"),
-        builders=calls(engine.builders),
+        build=call("build"),
+        script=engine.script and call("script"),
+        spring=engine.spring and call("spring"),
+        builders={key: call() for key in engine.builders},
         own_step="",  # it would be imported
         presets=tuple(
-            replace(each, settings=_settings(each.settings), builders=calls(each.builders))
+            replace(
+                each,
+                settings=_settings(each.settings),
+                builders={key: call() for key in each.builders},
+            )
             for each in engine.presets
         ),
     )
-    files = {name: getattr(module, "__file__", None) for name, module in sys.modules.items()}
-    return plain, {name: file for name, file in files.items() if isinstance(file, str)}
+
+
+def _top(what: Any) -> str:
+    return str(getattr(what, "__module__", type(what).__module__)).partition(".")[0]
 
 
 def _settings(settings: Any) -> Any:

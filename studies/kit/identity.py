@@ -1,143 +1,133 @@
-"""What made a row: the code that it runs through, its source as it is declared, and versions.
+"""What made a row: the versions of what computes, and the files whose code it runs through.
 
-A row depends on the code by which its source answers and its study reduces the answer, on what the
-engine declares, and on the versions of the engine and of what computes; besides, on its case, which
-is its key in the journal. Not on another engine, nor on words, pictures and the command line. A
-table depends on its rows and on how they are tabulated.
+A row of a model depends on `analytic`; one of an engine on what engines share and on that engine's
+own files as well. Besides, it depends on the file of the function that measured it, and on the
+files of `studies` that this imports. Comments, docstrings, other engines, words and pictures make
+no row old.
 """
 
-import enum
+import ast
 import hashlib
-import json
 import platform
+import sys
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import fields, is_dataclass
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
+from importlib import metadata
+from inspect import getsourcefile, unwrap
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
-from engines.layouts import Ability
-from studies.kit.fingerprint import ROOT, Name, Reached, name_of, names_of, reached
-from studies.kit.jobs import Job, plain
-from studies.kit.journal import JOURNAL, FolderError, Kept, Maker, Row, named
-from studies.kit.provenance import NOT_INSTALLED, NUMERICAL_PACKAGES, version_of
-from studies.sources.registry import Source, asks_of
+import engines
+from studies.sources.registry import Source
 
-FOUND_BY_NAME: frozenset[Name] = frozenset(
-    {
-        ("analytic.accelerograms", "read"),
-        ("engines.registry", "ENGINES"),
-        ("engines.registry", "find"),
-        ("studies.sources.registry", "SOURCES"),
-        ("studies.sources.registry", "presets_of"),
-        ("studies.sources.registry", "resolve"),
-    }
-)
-"""Where sources, engines and records are looked up: what a row asks is a part of it, by itself."""
-
-ASIDE = frozenset(
-    {"core", "factors", "install", "own_step", "rules", "script", "title"}
-    | {"abilities", "build", "builders"}
-)
-"""What an engine declares for readers, for what is no row of a journal, and by what is asked."""
-
-OF_A_PRESET = ("settings", "stepping", "step", "step_s", "frame")
-"""What of a preset makes a row."""
-
+ENGINES_AT = Path(engines.__file__).parent
+ROOT = ENGINES_AT.parent
+SHARED = ("parts", "run", "watching")
+"""Folders of `engines` that all engines share, beside the files in it."""
+COMPUTING = ("numpy", "scipy", "numba")
+"""Packages that a number may depend on."""
+NOT_INSTALLED = "not installed"
+ASIDE = ("kit", "drawing", "page")
+"""Parts of `studies` that no number depends on."""
+DESCRIBING = ("block", "checks", "frame", "slide", "motion", "record", "response")
+"""Modules of `analytic` that an engine's answer depends on."""
+ANSWER = ROOT / "studies" / "kit" / "jobs.py"
+SOURCES = ROOT / "studies" / "sources"
 SHOWN = 3
-"""Things that made a row otherwise, named at most."""
+
+Maker = Mapping[str, str]
+"""What made a row: what it depends on -> its version, or a digest of its code."""
 
 
-class Makers:
-    """What makes the rows of a plan.
-
-    Parameters
-    ----------
-    ask, reduce : callable
-        Those of the plan.
-    root : Path, optional
-        The folder of the packages.
-    """
-
-    def __init__(
-        self, ask: Callable[..., Any], reduce: Callable[..., Any], root: Path = ROOT
-    ) -> None:
-        self._shared = {name_of(ask), name_of(reduce)}
-        self._root = root
-        self._known: dict[Any, Maker] = {}
-
-    def of(self, job: Job) -> Maker:
-        """Return what makes the row of a job."""
-        asked = job.source, self._kinds(job), asks_of(job.block)
-        if asked not in self._known:
-            source = job.asked
-            packages = (*NUMERICAL_PACKAGES, *(source.declared.packages if source.engine else ()))
-            self._known[asked] = {
-                **self.reached(job).digests(),
-                **_declared(source, asks_of(job.block)),
-                "Python": ".".join(platform.python_version_tuple()[:2]),
-                **{name: version_of(name) for name in packages},
-            }
-        return self._known[asked]
-
-    def reached(self, job: Job) -> Reached:
-        """Return the code that the row of a job runs through."""
-        source = job.asked
-        names = {*self._shared, *self._kinds(job), name_of(source.call)}
-        if source.engine:
-            engine, preset = source.declared, source.used
-            builder = engine.builder(asks_of(job.block), preset)
-            parts = (type(engine), type(preset), type(preset.settings), builder, engine.spring)
-            names = names.union(*(names_of(part) for part in parts if part))
-        return reached(names, self._root, cut=FOUND_BY_NAME)
-
-    def of_tables(self, jobs: Iterable[Job], tabulate: Callable[..., Any]) -> dict[str, Any]:
-        """Return what makes tables: their tabulation, and by source what makes their rows."""
-        made: dict[str, set[str]] = {}
-        for job in jobs:
-            made.setdefault(job.source, set()).add(named(self.of(job)))
-        tabulation = reached([name_of(tabulate)], self._root, cut=FOUND_BY_NAME).digests()
-        rows = {source: sorted(names) for source, names in made.items()}
-        return {"tabulation": named(tabulation), "rows": rows}
-
-    def _kinds(self, job: Job) -> frozenset[Name]:
-        """Return the kinds of a job's values, whose methods are called."""
-        values = [job.block, job.motion, *job.options.values()]
-        for value in values:  # a motion may hold another one
-            values += [getattr(value, item.name) for item in fields(value)] if _data(value) else []
-        return frozenset(name_of(type(value)) for value in values if _data(value))
+def version_of(package: str) -> str:
+    """Return the version of an installed package, `NOT_INSTALLED` without it."""
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return NOT_INSTALLED
 
 
-def _data(value: Any) -> bool:
-    """Return whether a value is one of a dataclass."""
-    return is_dataclass(value) and not isinstance(value, type)
+@cache
+def code_in(*paths: Path) -> str:
+    """Return a digest of the modules in some files and folders, without comments and docstrings."""
+    files = [file for path in paths for file in ([path] if path.is_file() else path.rglob("*.py"))]
+    bare = [f"{file.name} {_bare(file)}" for file in sorted(set(files))]
+    return hashlib.sha256("\n".join(bare).encode()).hexdigest()[:12]
 
 
-def _declared(source: Source, asks: Sequence[Ability]) -> dict[str, str]:
-    """Return what of an engine's declaration rows depend on that ask for some abilities."""
-    if not source.engine:
-        return {}
-    engine, used = source.declared, source.used
-    values = {
-        **{item.name: getattr(engine, item.name) for item in fields(engine)},
-        "presets": {name: getattr(used, name) for name in OF_A_PRESET},
-        "builder": engine.builder(asks, used),
-        "held": [ability.name for ability in asks if ability in engine.holds],
-        "stacked": used.stacked if Ability.STACKED in asks else None,
+@cache
+def _bare(file: Path) -> str:
+    tree = ast.parse(file.read_bytes())
+    for node in ast.walk(tree):
+        if isinstance(body := getattr(node, "body", None), list):
+            node.body = [each for each in body if not _is_text(each)]  # type: ignore[attr-defined]
+    return hashlib.sha256(ast.dump(tree).encode()).hexdigest()
+
+
+def _is_text(node: ast.AST) -> bool:
+    value = getattr(node, "value", None)
+    return isinstance(node, ast.Expr) and isinstance(getattr(value, "value", None), str)
+
+
+@cache
+def files_of(module: str) -> frozenset[Path]:
+    """Return the file of a module of `studies` and of those of `studies` that it imports."""
+    found: set[Path] = set()
+    pending = [module]
+    while pending:
+        path = ROOT / pending.pop().replace(".", "/")
+        file = next((each for each in (path.with_suffix(".py"), path / "__init__.py")
+                     if each.is_file()), None)  # fmt: skip
+        if file is None or file in found:
+            continue
+        found.add(file)
+        for node in ast.parse(file.read_bytes()).body:
+            if isinstance(node, ast.ImportFrom) and (name := node.module or "")[:8] == "studies.":
+                if name.split(".")[1] not in ASIDE:
+                    pending += [name, *(f"{name}.{each.name}" for each in node.names)]
+    return frozenset(found)
+
+
+@cache
+def _engine_files(module: str) -> tuple[Path, ...]:
+    """Return the files of an engine by the module of its builder, and engines that it imports."""
+    known = getattr(sys.modules.get(module), "__file__", None) or getsourcefile(__import__(module))
+    file = Path(known or "")
+    if ENGINES_AT not in file.parents:
+        return (file if file.name != "__init__.py" else file.parent,)
+    return (ENGINES_AT / file.relative_to(ENGINES_AT).parts[0],)
+
+
+@cache
+def maker_of(source: Source, measure: Callable[..., Any]) -> Maker:
+    """Return what makes the rows of a source that a function measures."""
+    measured = files_of(unwrap(measure).__module__) | {ANSWER}
+    packages = (*COMPUTING, *(source.declared.packages if source.engine else ()))
+    made = {
+        "Python": ".".join(platform.python_version_tuple()[:2]),
+        **{name: version_of(name) for name in packages},
     }
-    kept = {name: value for name, value in values.items() if name not in ASIDE}
-    text = json.dumps(kept, default=_plain, sort_keys=True)
-    return {f"declaration of {engine.name}": hashlib.sha256(text.encode()).hexdigest()[:12]}
+    if not source.engine:
+        made["analytic"] = _reference()
+        return {**made, "studies": code_in(*measured, SOURCES)}
+    known = (ROOT / "analytic" / f"{name}.py" for name in DESCRIBING)
+    # what a study measures may take the exact solution beside the engine's answer
+    made["analytic"] = code_in(*known) if measured == {ANSWER} else _reference()
+    made["engines"] = code_in(*ENGINES_AT.glob("*.py"), *(ENGINES_AT / name for name in SHARED))
+    made["studies"] = code_in(*measured, SOURCES / "registry.py")
+    build = source.declared.build
+    files = getattr(build, "files", None) or _engine_files(build.__module__)
+    return {**made, f"code of {source.engine}": code_in(*files)}
 
 
-def _plain(value: Any) -> Any:
-    if isinstance(value, enum.Enum):
-        return str(value)
-    return sorted(names_of(value)) if callable(value) else plain(value)
+def _reference() -> str:
+    files = (ROOT / "analytic").rglob("*.py")
+    return code_in(*(file for file in files if file.name != "showing.py"))
 
 
 def changed(then: Maker, now: Maker) -> list[str]:
-    """Return the names of what made a row and would make another one now.
+    """Return what made a row and would make another one now.
 
     A version counts only where there is one: what was made elsewhere cannot be made anew here.
     """
@@ -148,69 +138,19 @@ def changed(then: Maker, now: Maker) -> list[str]:
     ]
 
 
-Stale: TypeAlias = tuple[str, Maker, Maker]
-"""The source of a row, what made it, and what would make it now."""
-
-
-def sorted_rows(
-    jobs: Iterable[Job], kept: Kept, makers: Makers, folder: Path
-) -> tuple[dict[str, Row], list[Stale]]:
-    """Return the kept rows of jobs that would be made so now, by their keys, and the others.
-
-    Parameters
-    ----------
-    jobs : iterable of Job
-    kept : Kept
-        The rows of a folder, and what made them; those of other jobs are passed over.
-    makers : Makers
-        What would make them now.
-    folder : Path
-        Where they are kept; a refusal names it.
-
-    Returns
-    -------
-    dict
-        Key of a job -> its row.
-    list of Stale
-        One for each row of a job that would be another now; `why` puts them into words.
-
-    Raises
-    ------
-    FolderError
-        If a row of the folder is not of the job which its key names.
-    """
-    valid: dict[str, Row] = {}
-    stale = []
-    for job in jobs if kept else ():  # a key takes a tenth of a millisecond
-        key = job.key
-        if key not in kept:
-            continue
-        row, then = kept[key]
-        if not job.has_made(row):
-            problem = f"its {JOURNAL} has a row of something else under the key {key}"
-            raise FolderError(folder, problem)
-        if changed(then, now := makers.of(job)):
-            stale.append((job.source, then, now))
-        else:
-            valid[key] = row
-    return valid, stale
-
-
-def why(stale: Iterable[Stale]) -> str:
-    """Say of rows that must be made anew how many there are of each source, and why."""
+def why(stale: Iterable[tuple[str, Maker, Maker]]) -> str:
+    """Say of rows that are computed again how many there are of each source, and why."""
     counts = Counter(
-        (source, tuple(_said(name, then, now) for name in changed(then, now)))
+        (source, tuple(_said(name, then, now) for name in changed(then, now)[:SHOWN]))
         for source, then, now in stale
     )
-    said = []
-    for (source, reasons), count in counts.items():
-        more = [f"{len(reasons) - SHOWN} more"] if len(reasons) > SHOWN else []
-        rows = f"{count} {'row' if count == 1 else 'rows'}"
-        said.append(f"{source}: {rows} made by {', '.join([*reasons[:SHOWN], *more])}")
-    return "; ".join(said)
+    return "; ".join(
+        f"{source}: {count} {'row' if count == 1 else 'rows'} made with {', '.join(reasons)}"
+        for (source, reasons), count in counts.items()
+    )
 
 
 def _said(name: str, then: Maker, now: Maker) -> str:
-    if name.endswith(".py") or name.startswith("declaration"):
-        return f"another {name}"
+    if name in ("analytic", "engines", "studies") or name.startswith("code of"):
+        return f"other code of {name.removeprefix('code of ')}"
     return f"{name} {then.get(name, 'none')}, not {now.get(name, 'none')}"

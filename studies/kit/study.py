@@ -1,170 +1,170 @@
-"""What a study is: data by which it is listed, run and shown, and the module that does the work.
-
-The data need no more than the standard library, so that a list of the commands loads no study.
-"""
+"""What a study is, and the one way it runs: jobs in; rows, tables, a finding and figures out."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import InitVar, dataclass, field, replace
-from importlib import import_module
-from inspect import Parameter, signature
-from typing import TYPE_CHECKING, Any
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import pandas as pd
+from cyclopts import Parameter
+
+from studies.kit.arguments import Out, sources_option
+from studies.kit.jobs import Job, Row, answer
+from studies.kit.options import Running
+from studies.kit.run import exit_code, makers_of, place_of, run
+from studies.kit.say import as_text
+from studies.kit.store import Store
+from studies.kit.tables import read_table, tables_of, write_text
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    import pandas as pd
     from matplotlib.figure import Figure
 
+Tables = Mapping[str, pd.DataFrame]
+"""Tables by the names of their files, without .csv."""
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Chapter:
-    """A place of a study in a report.
 
-    Attributes
-    ----------
-    question : str
-    folder : str
-        Where a report keeps its results; by default called as the study.
-    tables : tuple of str
-        Tables short enough to be read.
-    quick, full : tuple of str
-        Further arguments of its command.
-    minutes : tuple of float
-        About how long quick and full take on two cores.
-    weaker : str
-        In what the quick form falls short of the full one.
-    """
-
-    question: str
-    folder: str = ""
-    tables: tuple[str, ...] = ()
-    quick: tuple[str, ...] = ("--quick",)
-    full: tuple[str, ...] = ()
-    minutes: tuple[float, float] = (1.0, 1.0)
-    weaker: str = ""
+def _nothing(tables: Tables) -> Mapping[str, Any]:
+    return {}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
-    """A study: what its folder says of it, in words and pictures, is made of its tables alone.
+    """A study: its finding and its figures are made of its tables alone.
 
     Attributes
     ----------
     name : str
-        Its command.
+        Its command, and the folder of a report that holds its results.
+    question : str
+        What it answers.
     help : str
-        What its command's help says first.
-    tables : tuple of str
-        Tables that it writes into its folder.
-    table : str
-        Pattern of the table by which its folder is known; by default the first, where there is
-        something to draw or to claim.
-    texts : tuple of str
-        Columns of its tables that are words though they may look like numbers.
-    claims : tuple of str
-        Tables of which its module's `finding` makes one sentence, what they show first; without
-        any it takes the folder.
-    drawings : mapping
-        Name of a picture -> the function of its module `figure` that draws it, and the tables that
-        this takes. Where captions name others, one of the two modules has `pictures` of the folder,
-        by name.
+        What its command's help says: what it does, and how long that takes.
+    sources : tuple of str
+        Whom it asks by default; without any, it has no option --sources.
+    options : type, optional
+        A dataclass of further options.
+    quick : str
+        What --quick leaves out; without it, there is no such option.
+    jobs : callable
+        ``(sources, quick[, options]) -> list of Job``, in the order of the rows.
+    measure : callable
+        A job -> the columns that follow its labels and source, outcome among them. It runs in a
+        process that may end without an answer; `studies.kit.jobs.ask` then returns a failure.
+    tabulate : callable
+        Rows -> tables.
+    finding : callable
+        Tables -> one sentence, what they show.
+    shown : callable, optional
+        Tables -> the short tables that stand beside the finding, by their titles.
+    figures : callable, optional
+        Tables -> figures, by the names of their files, without .png.
     captions : mapping
-        Name of a picture -> what is seen in it, for those who read and those who are read to.
-    chapter, chapters : Chapter, tuple of Chapter
-        Its place or places in a report.
-    others : tuple of str
-        Files that it writes besides.
-    module : str
-        Where its `command` is, the function whose parameters are the command's, and which returns
-        the exit code.
+        Beginning of the name of a figure -> what is seen in it.
+    needed : callable, optional
+        Rows -> those whose failure is the study's; by default all.
+    texts : tuple of str
+        Columns that are words though they may look like numbers.
+    rows : str
+        Name of a table that holds the rows as they are: a folder without a store goes on from it.
+    running : Running
+        Where its jobs run by default, and for how long.
     """
 
     name: str
+    question: str
     help: str
-    tables: tuple[str, ...] = ()
-    table: str = ""
-    texts: tuple[str, ...] = ()
-    claims: tuple[str, ...] = ()
-    drawings: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    sources: tuple[str, ...] = ()
+    options: type | None = None
+    quick: str = ""
+    jobs: Callable[..., Sequence[Job]]
+    measure: Callable[[Job], Row] = answer
+    tabulate: Callable[[pd.DataFrame], Tables]
+    finding: Callable[[Tables], str]
+    shown: Callable[[Tables], Mapping[str, pd.DataFrame]] = _nothing
+    figures: Callable[[Tables], Mapping[str, Figure]] = _nothing
     captions: Mapping[str, str] = field(default_factory=dict)
-    chapter: InitVar[Chapter | None] = None
-    chapters: tuple[Chapter, ...] = ()
-    others: tuple[str, ...] = ("findings.txt",)
-    module: str = ""
+    needed: Callable[[Sequence[Row]], Sequence[Row]] = tuple
+    texts: tuple[str, ...] = ()
+    rows: str = ""
+    running: Running = Running()  # noqa: RUF009
 
-    def __post_init__(self, chapter: Chapter | None) -> None:
-        places = (chapter,) if chapter else self.chapters
-        known = {
-            "chapters": tuple(replace(each, folder=each.folder or self.name) for each in places),
-            "table": self.table or (self.tables[0] if self.captions or self.claims else ""),
-            "module": self.module or f"studies.{self.name}.study",
+    def command(self) -> Callable[..., int]:
+        """Return its command: the function whose parameters are the command's options."""
+        taken = {"out": (Out, inspect.Parameter.empty)}
+        if self.options is not None:
+            taken["options"] = (self.options, self.options())
+        if self.sources:
+            taken["sources"] = (Annotated[tuple[str, ...], sources_option()], self.sources)
+        if self.quick:
+            taken["quick"] = (Annotated[bool, Parameter(help=self.quick)], False)
+        taken["running"] = (Running, self.running)
+
+        def command(**given: Any) -> int:
+            given = {name: value for name, (_, value) in taken.items()} | given
+            out, running = given.pop("out"), given.pop("running")
+            options = [given.pop("options")] if self.options is not None else []
+            jobs = self.jobs(given.get("sources", ()), given.get("quick", False), *options)
+            asked = asdict(*options) if options else {}
+            return self.carry_out(out, jobs, running, **given, **asked)
+
+        command.__doc__ = f"{self.question}\n\n{self.help}"
+        command.__annotations__ = {name: hint for name, (hint, _) in taken.items()} | {
+            "return": int
         }
-        for name, value in known.items():
-            object.__setattr__(self, name, value)
+        command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+            [
+                inspect.Parameter(
+                    name, inspect.Parameter.KEYWORD_ONLY, default=value, annotation=of
+                )
+                for name, (of, value) in taken.items()
+            ],
+            return_annotation=int,
+        )
+        return command
 
-    @property
-    def products(self) -> tuple[str, ...]:
-        """All files that it writes into its folder; none without a table."""
-        pictures = (f"{name}.png" for name in self.captions)
-        return (*self.tables, *pictures, *self.others) if self.tables else ()
-
-    @property
-    def about(self) -> str:
-        """What its command's help says: what it is for, what it writes, and how long that takes."""
-        writes = [*self.tables, *["pictures"] * bool(self.captions), *self.others]
-        said = [self.help, f"Writes {', '.join(writes)}."] if self.tables else [self.help]
-        for place in self.chapters[:1]:
-            quick = f", {place.minutes[0]:g} with {' '.join(place.quick)}" if place.quick else ""
-            said[-1] += f" About {place.minutes[1]:g} minutes on two cores{quick}."
-        return "\n\n".join(said)
-
-    def load(self) -> Any:
-        """Import its module."""
-        return import_module(self.module)
-
-    @property
-    def parameters(self) -> Mapping[str, Parameter]:
-        """The parameters of its command, by name."""
-        return signature(self.load().command).parameters
-
-    def read(self, folder: Path, name: str) -> pd.DataFrame:
-        """Read a table of a folder, packed or not; return none as empty."""
-        from studies.kit.tables import table_in
-
-        return table_in(folder, name, *self.texts)
-
-    def finding(self, folder: Path) -> str:
-        """Return what a folder's tables show first, as a claim of one sentence."""
-        if not self.claims:
-            return str(self.load().finding(folder))
-        return str(self.load().finding(*(self.read(folder, name) for name in self.claims)))
-
-    def pictures(self, folder: Path) -> dict[str, Figure]:
-        """Draw a folder's figures from its tables alone, by name; none without its first table."""
-        figures = f"{self.module.rpartition('.')[0]}.figure"
-        if self.captions and not self.drawings:
-            known = getattr(self.load(), "pictures", None)
-            return dict((known or import_module(figures).pictures)(folder))
-        read = {
-            picture: (draw, [self.read(folder, name) for name in tables])
-            for picture, (draw, *tables) in self.drawings.items()
-        }
-        return {
-            picture: getattr(import_module(figures), draw)(*tables)
-            for picture, (draw, tables) in read.items()
-            if len(tables[0].columns)
-        }
-
-    def command_line(self, chapter: Chapter, folder: Path, full: bool) -> list[str]:
-        """Return the words after `rocking` that fill a folder for a chapter.
+    def carry_out(self, out: Path, jobs: Sequence[Job], running: Running, **asked: Any) -> int:
+        """Run into a folder what it does not hold yet; write and print what that shows.
 
         Parameters
         ----------
-        chapter : Chapter
-        folder : Path
-        full : bool
-            Whether in its full form, or the quick one.
+        out : Path
+        jobs : sequence of Job
+        running : Running
+        **asked
+            Options of the command, for the provenance.
+
+        Returns
+        -------
+        int
+            0 if all rows that are needed are usable, 1 if some failed.
         """
-        return [self.name, "--out", str(folder), *(chapter.full if full else chapter.quick)]
+        with Store(out, self.name, self.rows) as store:
+            rows = run(jobs, self.measure, place_of(running), store, running.also or ())
+            tables = self.tabulate(pd.DataFrame(rows))
+            store.finish(tables, makers_of(jobs, self.measure), len(rows), **asked)
+        print(self.tell(out))
+        return exit_code(self.needed(rows))
+
+    def read(self, folder: Path) -> dict[str, pd.DataFrame]:
+        """Read the tables of a folder, packed or not, by their names."""
+        paths = {path.name.partition(".")[0]: path for path in tables_of(folder)}
+        return {name: read_table(path, *self.texts) for name, path in paths.items()}
+
+    def tell(self, folder: Path) -> str:
+        """Draw the figures of a folder and write its finding, from its tables; return the text."""
+        tables = self.read(folder)
+        if drawn := self.figures(tables):
+            from studies.drawing.figures import save_all
+
+            save_all(dict(drawn), folder)
+        text = as_text(self.finding(tables), self.shown(tables))
+        write_text(folder / "findings.txt", text + "\n")
+        return text
+
+    def caption_of(self, figure: str) -> str:
+        """Return what is seen in a figure, by the longest beginning of its name that has words."""
+        known = [start for start in self.captions if figure.startswith(start)]
+        return self.captions[max(known, key=len)] if known else figure

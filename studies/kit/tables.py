@@ -1,27 +1,48 @@
-"""Tables as files and as text."""
+"""Tables as files: written in one piece, and read back to the bit."""
 
 from __future__ import annotations
 
-import math
+import gzip
+import hashlib
+import os
 import re
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pandas as pd
 
-from studies.kit.journal import PACKED
-from studies.kit.provenance import write_text
-
-SMALL = 1e-2
-"""Numbers below are shown as powers of ten."""
-
-SHOWN = 60
-"""Rows of a table that are shown as text; its CSV has all."""
-
-
+PACKED = ".gz"
+COLUMNS = Path(__file__).parents[1] / "published" / "columns.csv"
+"""The columns of every published table."""
 FORMULA = re.compile(r"'*[=+\-@].+")
 """Words in one line that a spreadsheet takes for a formula, or that were quoted once."""
+
+
+@contextmanager
+def draft(path: Path) -> Iterator[Path]:
+    """Yield where to write a file that takes the place of `path` if the context ends well.
+
+    It lies beside `path`, is empty and of the same suffix, and no link. An OSError names `path`.
+    """
+    part = path.with_name(f".part.{path.name}")
+    try:
+        part.unlink(missing_ok=True)
+        os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666))
+        yield part
+        part.replace(path)
+    except BaseException as error:
+        with suppress(OSError):
+            part.unlink()
+        if isinstance(error, OSError) and error.errno:
+            raise OSError(error.errno, error.strerror, str(path)) from error
+        raise
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file in UTF-8 in one piece: it is complete, or it is still the one before."""
+    with draft(path) as part:
+        part.write_bytes(text.encode())
 
 
 def quoted(word: object) -> object:
@@ -45,58 +66,28 @@ def _words(table: pd.DataFrame) -> list[str]:
 
 
 def write_table(path: Path, table: pd.DataFrame) -> None:
-    """Write a table as CSV, numbers to the bit and missing ones as nan, in one piece.
-
-    A word that a spreadsheet would take for a formula is `quoted`.
-
-    Parameters
-    ----------
-    path : Path
-    table : DataFrame
-        Its index is not written.
-
-    Raises
-    ------
-    OSError
-        That names `path`.
-    """
+    """Write a table without its index as CSV, numbers to the bit and missing ones as nan."""
     safe = table.assign(**{name: table[name].map(quoted) for name in _words(table)})
     write_text(path, safe.to_csv(index=False, na_rep="nan"))
 
 
-COLUMNS = Path(__file__).parents[1] / "published" / "columns.csv"
-"""The columns of every published table."""
-
-
-def with_head(table: pd.DataFrame, folders: Iterable[str], name: str) -> pd.DataFrame:
-    """Return a table; one that has no columns with those of the published one.
-
-    Parameters
-    ----------
-    table : DataFrame
-    folders : iterable of str
-        Where its study is published.
-    name : str
-        Of its file, without .csv.
-    """
+def with_head(table: pd.DataFrame, study: str, name: str) -> pd.DataFrame:
+    """Return a table of a study; one that has no columns with those of the published one."""
     if len(table.columns):
         return table
     known = pd.read_csv(COLUMNS, keep_default_na=False)
-    mine = known["table"].isin(
-        [f"{each}/{name}.csv{end}" for each in folders for end in ("", PACKED)]
-    )
+    mine = known["table"].isin([f"{study}/{name}.csv{end}" for end in ("", PACKED)])
     return pd.DataFrame(columns=known.loc[mine, "column"].drop_duplicates())
 
 
 def read_table(path: Path, *words: str) -> pd.DataFrame:
     """Read a table back as it was written: empty words are such, and numbers may be missing.
 
-    A blank file is a table without columns.
-
     Parameters
     ----------
     path : Path
-    words : str
+        A blank file is a table without columns.
+    *words : str
         Columns of words that may look like numbers, besides message.
     """
     texts = dict.fromkeys(("message", *words), str)
@@ -108,45 +99,17 @@ def read_table(path: Path, *words: str) -> pd.DataFrame:
 
 
 def table_in(folder: Path, name: str, *words: str) -> pd.DataFrame:
-    """Read a table of a folder, packed or not.
-
-    Parameters
-    ----------
-    folder : Path
-    name : str
-        Of the file, without .csv; of both the one that is not packed is read, the newer.
-    words : str
-        As for `read_table`.
-
-    Returns
-    -------
-    DataFrame
-        Empty where there is no such file.
-    """
+    """Read a table of a folder, packed or not; return an empty one where there is no such file."""
     paths = (folder / f"{name}.csv", folder / f"{name}.csv{PACKED}")
     return next((read_table(path, *words) for path in paths if path.is_file()), pd.DataFrame())
 
 
-def figure(value: object) -> str:
-    """Return a value as a reader sees it: a number in three digits, a dash for none."""
-    if not isinstance(value, float):
-        return str(value)
-    if math.isnan(value):
-        return "-"
-    return f"{value:.1e}" if 0.0 < abs(value) < SMALL else f"{value:.3g}"
+def tables_of(folder: Path) -> Iterable[Path]:
+    """Return the tables of a folder, packed or not."""
+    return sorted([*folder.glob("*.csv"), *folder.glob(f"*.csv{PACKED}")])
 
 
-def in_columns(table: pd.DataFrame) -> str:
-    """Return a table as aligned text, words to the left and numbers to the right."""
-    numeric = [pd.api.types.is_numeric_dtype(kind) for kind in table.dtypes]
-    rows = [list(map(str, table.columns)), *table.head(SHOWN).map(figure).to_numpy().tolist()]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = [
-        "  ".join(
-            word.rjust(width) if right else word.ljust(width)
-            for word, width, right in zip(row, widths, numeric, strict=True)
-        ).rstrip()
-        for row in rows
-    ]
-    more = len(table) - SHOWN
-    return "\n".join([*lines, *([f"and {more} more rows"] if more > 0 else [])])
+def digest(path: Path) -> str:
+    """Return the SHA-256 of a table's text, packed or not."""
+    with gzip.open(path) if path.suffix == PACKED else path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

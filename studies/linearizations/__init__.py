@@ -1,6 +1,6 @@
 """What in a linearization matters: onset, frequency or saddle."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="linearizations",

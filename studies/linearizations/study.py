@@ -15,11 +15,11 @@ from analytic.models import Model
 from analytic.motion import FloatArray
 from studies.cases.paper import PULSES, sweep_cases
 from studies.drawing.kept import tell
-from studies.kit.arguments import Out
-from studies.kit.journal import Row
-from studies.kit.options import DEFAULT_RUNNING
-from studies.kit.plan import Plan, Tables, carry_out
-from studies.kit.tables import read_table
+from studies.old.arguments import Out
+from studies.old.journal import Row
+from studies.old.options import DEFAULT_RUNNING
+from studies.old.plan import Plan, Tables, carry_out
+from studies.old.tables import read_table
 from studies.linearizations import STUDY
 from studies.measures.claims import TABLE, claim, read_findings, tally, write_findings
 from studies.measures.differences import posed_cases

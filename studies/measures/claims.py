@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 import pandas as pd
 
-from studies.kit.tables import read_table, write_table
+from studies.old.tables import read_table, write_table
 from studies.measures.words import listed, out_of
 
 TABLE = "findings.csv"
@@ -87,6 +87,12 @@ def tally(items: Sequence[Finding], whose: str) -> str:
     failing = [item.statement for item in tested if not item.holds]
     words = f"Of {whose} {out_of(len(tested) - len(failing), len(tested))} hold"
     return f"{words}; not: {'; '.join(failing)}." if failing else f"{words}."
+
+
+def table_of(items: Sequence[Finding]) -> pd.DataFrame:
+    """Return findings as a table, with a column source where some are about one."""
+    table = pd.DataFrame([asdict(item) for item in items])
+    return table if any(table["source"]) else table.drop(columns="source")
 
 
 def write_findings(folder: Path, items: Sequence[Finding]) -> None:

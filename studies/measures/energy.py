@@ -8,7 +8,7 @@ import numpy as np
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Outcome, Response
-from studies.kit.jobs import Job
+from studies.old.jobs import Job
 
 SAMPLES = 400
 """Samples of a history from which energies are read."""

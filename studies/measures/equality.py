@@ -14,10 +14,10 @@ import numpy as np
 import pandas as pd
 from cyclopts import Parameter
 
-from studies.kit import app
-from studies.kit.arguments import BadInputError, Place, Positive
-from studies.kit.study import Study
-from studies.kit.tables import read_table
+from studies.old import app
+from studies.old.arguments import BadInputError, Place, Positive
+from studies.old.study import Study
+from studies.old.tables import read_table
 
 MEASURED = frozenset(("wall_s", "setup_s", "step_s", "engine_s", "memory_kib", "real_time_factor"))
 """Columns that no two runs have alike: times, and the memory of a process."""

@@ -11,9 +11,9 @@ import pandas as pd
 
 from analytic.response import Outcome
 from engines.declaration import Stepping
-from studies.kit.jobs import Job
-from studies.kit.journal import Row
-from studies.kit.provenance import check
+from studies.old.jobs import Job
+from studies.old.journal import Row
+from studies.old.provenance import check
 from studies.measures.published import PUBLISHED
 from studies.sources.registry import resolve
 
@@ -124,7 +124,7 @@ def with_estimates(
 
     Raises
     ------
-    studies.kit.journal.FolderError
+    studies.old.journal.FolderError
         If the published factors were edited.
     """
     halves = {row["source"]: row for row in finer}
@@ -188,7 +188,7 @@ def published_trust(source: str) -> Trust | None:
 
     Raises
     ------
-    studies.kit.journal.FolderError
+    studies.old.journal.FolderError
         If the table is not what its folder's provenance tells of.
     studies.sources.registry.UnknownSourceError
         If there is no such source.

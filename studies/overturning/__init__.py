@@ -1,6 +1,6 @@
 """Overturning maps: which pulses overturn a block, and who draws that map wrongly."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="overturning",

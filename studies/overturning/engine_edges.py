@@ -17,8 +17,8 @@ import pandas as pd
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
 from studies.cases.window import Window
-from studies.kit.jobs import Job, ask, summary
-from studies.kit.journal import Row
+from studies.old.jobs import Job, ask, summary
+from studies.old.journal import Row
 from studies.sources.registry import Source
 
 OFFSETS = (-1e-2, -1e-3, -1e-4, 1e-4, 1e-3, 1e-2)

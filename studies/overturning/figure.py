@@ -20,7 +20,7 @@ from studies.cases.window import LEAST_ONSETS, Window
 from studies.drawing.facets import key, panels
 from studies.drawing.kept import Pictures
 from studies.drawing.styles import engine_title, full_name, style_of
-from studies.kit.tables import table_in
+from studies.old.tables import table_in
 from studies.measures.differences import conditioning_of
 from studies.measures.presets import in_words, preset_of
 from studies.measures.words import gathered

@@ -24,8 +24,8 @@ from analytic.motion import FloatArray
 from analytic.response import Outcome
 from studies.cases.window import LEAST_ONSETS, Window
 from studies.drawing.kept import tell
-from studies.kit import provenance
-from studies.kit.tables import table_in, write_table
+from studies.old import provenance
+from studies.old.tables import table_in, write_table
 from studies.measures.presets import in_order, in_words, preset_of
 from studies.measures.words import between, listed, part
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, kinds_of

@@ -13,7 +13,7 @@ import pandas as pd
 from analytic.models import MODELS
 from analytic.motion import FloatArray
 from studies.cases.window import LEAST_ONSETS, Axis, Window
-from studies.kit.arguments import (
+from studies.old.arguments import (
     BadInputError,
     Count,
     Out,
@@ -22,12 +22,12 @@ from studies.kit.arguments import (
     as_bad_input,
     refuse_given,
 )
-from studies.kit.jobs import Job
-from studies.kit.journal import Row
-from studies.kit.naming import sources_option
-from studies.kit.options import PATIENT_RUNNING, PatientRunning, refuse_days, refuse_excess
-from studies.kit.plan import Plan, Tables, by_label, carry_out
-from studies.kit.provenance import usable_cores
+from studies.old.jobs import Job
+from studies.old.journal import Row
+from studies.old.naming import sources_option
+from studies.old.options import PATIENT_RUNNING, PatientRunning, refuse_days, refuse_excess
+from studies.old.plan import Plan, Tables, by_label, carry_out
+from studies.old.provenance import usable_cores
 from studies.overturning import STUDY
 from studies.overturning.edges import find_edges, intervals
 from studies.overturning.engine_edges import (

@@ -1,6 +1,6 @@
 """Every study on one page."""
 
-from studies.kit.study import Study
+from studies.old.study import Study
 
 REPORT = Study(
     name="report",

@@ -14,9 +14,9 @@ from analytic.models import MODELS
 from engines import ENGINES
 from studies.advise.words import setting_text
 from studies.catalogue import CHAPTERS
-from studies.kit import provenance
-from studies.kit.study import Chapter, Study
-from studies.kit.tables import table_in
+from studies.old import provenance
+from studies.old.study import Chapter, Study
+from studies.old.tables import table_in
 from studies.measures.claims import TABLE, Finding, read_findings, said_once
 from studies.measures.costs import LEAST_RUNS, cost_text
 from studies.measures.differences import WELL_CONDITIONED

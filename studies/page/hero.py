@@ -10,8 +10,8 @@ import pandas as pd
 from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from studies.cases.paper import free_rocking_window
-from studies.kit import provenance
-from studies.kit.jobs import Job, ask
+from studies.old import provenance
+from studies.old.jobs import Job, ask
 from studies.measures.samples import samples
 from studies.sources.registry import core_sources, resolve
 

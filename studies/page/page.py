@@ -19,9 +19,9 @@ from studies.cases.paper import PULSES
 from studies.catalogue import CHAPTERS
 from studies.defaults.study import INVALID, read
 from studies.drawing.figures import lay_out, write_points
-from studies.kit import provenance
-from studies.kit.study import Chapter, Study
-from studies.kit.tables import SMALL, read_table
+from studies.old import provenance
+from studies.old.study import Chapter, Study
+from studies.old.tables import SMALL, read_table
 from studies.measures.presets import in_words
 from studies.measures.words import capital, in_kinds, meant, part
 from studies.measures.wrongness import KINDS

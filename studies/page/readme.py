@@ -14,10 +14,10 @@ from engines import ENGINES
 from engines.troubles import TROUBLES
 from studies import scenes
 from studies.catalogue import CHAPTERS
-from studies.kit import provenance
-from studies.kit.arguments import BadInputError
-from studies.kit.journal import PROVENANCE
-from studies.kit.provenance import check, seal
+from studies.old import provenance
+from studies.old.arguments import BadInputError
+from studies.old.journal import PROVENANCE
+from studies.old.provenance import check, seal
 from studies.measures.costs import OUTDATED, STEPPED, cost_text
 from studies.measures.presets import in_words
 from studies.measures.published import dictionary

@@ -8,10 +8,10 @@ from pathlib import Path
 from tqdm import tqdm
 
 from studies.catalogue import CHAPTERS, STUDIES
-from studies.kit import app, provenance
-from studies.kit.arguments import Place
-from studies.kit.journal import FolderError
-from studies.kit.study import Chapter, Study
+from studies.old import app, provenance
+from studies.old.arguments import Place
+from studies.old.journal import FolderError
+from studies.old.study import Chapter, Study
 
 PAGE = "report.html"
 

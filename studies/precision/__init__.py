@@ -1,6 +1,6 @@
 """Error against run time, and what a scene costs."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="precision",

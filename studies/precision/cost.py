@@ -19,13 +19,13 @@ from engines import ENGINES, Scene
 from engines.run.drive import build, run
 from studies.cases.paper import free_rocking_window, sweep_cases
 from studies.drawing.kept import tell
-from studies.kit.arguments import Out
-from studies.kit.executors import COMPILING_S
-from studies.kit.naming import CORE, Engines
-from studies.kit.options import DEFAULT_RUNNING
-from studies.kit.plan import Plan, carry_out
-from studies.kit.pool import Pool
-from studies.kit.tables import table_in
+from studies.old.arguments import Out
+from studies.old.executors import COMPILING_S
+from studies.old.naming import CORE, Engines
+from studies.old.options import DEFAULT_RUNNING
+from studies.old.plan import Plan, carry_out
+from studies.old.pool import Pool
+from studies.old.tables import table_in
 from studies.measures.costs import STEPPED
 from studies.measures.differences import posed_cases
 from studies.measures.words import duration, listed

@@ -15,7 +15,7 @@ from analytic.response import Outcome, Response
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.drawing.kept import tell
-from studies.kit.tables import write_table
+from studies.old.tables import write_table
 from studies.measures.words import duration, listed, part, times
 from studies.precision import STUDY
 from studies.precision.choices import ALL, EXACT, TYPICAL, cheapest_below, choices, exact_cost

@@ -15,12 +15,12 @@ import pandas as pd
 from analytic.response import Outcome, Response
 from studies.cases.paper import free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.kit.arguments import Out, TimeLimit
-from studies.kit.jobs import Job, ask, summary
-from studies.kit.journal import Row
-from studies.kit.naming import CORE, Engines
-from studies.kit.options import Running
-from studies.kit.plan import Plan, Tables, carry_out
+from studies.old.arguments import Out, TimeLimit
+from studies.old.jobs import Job, ask, summary
+from studies.old.journal import Row
+from studies.old.naming import CORE, Engines
+from studies.old.options import Running
+from studies.old.plan import Plan, Tables, carry_out
 from studies.measures.energy import SAMPLES, energy_drift
 from studies.precision import STUDY, cost
 from studies.precision.methods import Method, methods_of

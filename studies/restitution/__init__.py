@@ -1,6 +1,6 @@
 """What an engine makes of a coefficient of restitution."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="restitution",

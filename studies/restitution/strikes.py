@@ -12,7 +12,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from engines import ENGINES
-from studies.kit.journal import Row
+from studies.old.journal import Row
 from studies.measures.formulas import by_step
 from studies.restitution.strike import Strike, strike
 from studies.restitution.ways import SHOWN, WAYS

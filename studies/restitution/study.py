@@ -8,10 +8,10 @@ import pandas as pd
 
 from engines import installed_engines
 from studies.drawing.kept import tell
-from studies.kit.arguments import BadInputError, Out
-from studies.kit.naming import Engines
-from studies.kit.options import DEFAULT_RUNNING
-from studies.kit.plan import Plan, Tables, carry_out
+from studies.old.arguments import BadInputError, Out
+from studies.old.naming import Engines
+from studies.old.options import DEFAULT_RUNNING
+from studies.old.plan import Plan, Tables, carry_out
 from studies.measures.words import listed
 from studies.restitution import STUDY, strikes
 from studies.restitution.strikes import BASE, VARIED

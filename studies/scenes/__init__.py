@@ -1,6 +1,6 @@
 """Scenes beyond one block: a frame, a slide, a moving floor."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 KINDS = ("frame", "slide", "floor", "block")
 

@@ -14,7 +14,7 @@ from analytic.motion import Motion, SinePulse
 from analytic.record import Record
 from engines.layouts import System
 from engines.parts.factors import DEFAULT
-from studies.kit.jobs import Job
+from studies.old.jobs import Job
 from studies.scenes.frames import frames
 from studies.scenes.places import PULSES
 from studies.sources.registry import resolve

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from analytic import RockingFrame
 from analytic.motion import SinePulse
-from studies.kit.jobs import Job
+from studies.old.jobs import Job
 from studies.scenes.places import PULSES, placed
 
 LOADS, COLUMNS = (0.5, 2.0, 4.0), (2, 3)

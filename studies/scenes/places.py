@@ -12,7 +12,7 @@ from analytic import simulate
 from analytic.motion import Motion
 from engines.declaration import Stepping
 from engines.layouts import System
-from studies.kit.jobs import Job
+from studies.old.jobs import Job
 from studies.sources.registry import resolve
 
 PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))

@@ -11,12 +11,12 @@ from analytic import simulate
 from analytic.response import Outcome, Response
 from engines.run.drive import LAG
 from studies.drawing.kept import tell
-from studies.kit.arguments import Out
-from studies.kit.jobs import Job, summary
-from studies.kit.journal import Row
-from studies.kit.naming import Sources
-from studies.kit.options import DEFAULT_RUNNING, Running
-from studies.kit.plan import Plan, carry_out
+from studies.old.arguments import Out
+from studies.old.jobs import Job, summary
+from studies.old.journal import Row
+from studies.old.naming import Sources
+from studies.old.options import DEFAULT_RUNNING, Running
+from studies.old.plan import Plan, carry_out
 from studies.measures.presets import engine_of, preset_of
 from studies.measures.words import listed
 from studies.scenes import KINDS, STUDY

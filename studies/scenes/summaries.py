@@ -9,8 +9,8 @@ import pandas as pd
 
 from analytic.response import Outcome
 from engines.run.drive import LAG
-from studies.kit.journal import Row
-from studies.kit.plan import Tables
+from studies.old.journal import Row
+from studies.old.plan import Tables
 from studies.measures.presets import engine_of
 from studies.measures.wrongness import counted, kinds_of, outcomes_of
 from studies.scenes import KINDS, frames

@@ -13,7 +13,7 @@ from analytic import RockingFrame, SlidingBlock
 from analytic.response import Outcome
 from engines import ENGINES
 from studies.drawing.styles import name_of
-from studies.kit.tables import read_table
+from studies.old.tables import read_table
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.words import listed, out_of, part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, counted, kinds_of, outcomes_of

@@ -1,6 +1,6 @@
 """One engine, on one page: outcomes, errors and time, extreme cases, what it is helped by."""
 
-from studies.kit.study import Study
+from studies.old.study import Study
 
 STUDY = Study(
     name="score",

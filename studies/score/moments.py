@@ -18,9 +18,9 @@ from analytic.response import Outcome, Response
 from engines.declaration import Stepping
 from engines.run.drive import NotAvailableError
 from engines.world import ContactPhase, Moment, Step, SteppedWorld
-from studies.kit.jobs import Job
-from studies.kit.journal import Row
-from studies.kit.refusing import brief, one_line
+from studies.old.jobs import Job
+from studies.old.journal import Row
+from studies.old.refusing import brief, one_line
 from studies.measures.words import listed
 from studies.score.release import turn_errors, world_of
 from studies.sources.registry import Source

@@ -11,9 +11,9 @@ from engines import ENGINES
 from engines.declaration import Engine
 from studies.advise.evidence import LADDER
 from studies.drawing.kept import tell
-from studies.kit import provenance
-from studies.kit.provenance import check
-from studies.kit.tables import read_table
+from studies.old import provenance
+from studies.old.provenance import check
+from studies.old.tables import read_table
 from studies.measures.differences import summarize, with_reference
 from studies.measures.finer import joint
 from studies.measures.posed import posed

@@ -15,10 +15,10 @@ import pandas as pd
 from analytic.accelerograms.text import finite_number
 from analytic.response import Outcome
 from engines.declaration import Engine
-from studies.kit import provenance
-from studies.kit.arguments import BadInputError
-from studies.kit.refusing import one_line
-from studies.kit.tables import in_columns
+from studies.old import provenance
+from studies.old.arguments import BadInputError
+from studies.old.refusing import one_line
+from studies.old.tables import in_columns
 from studies.measures.presets import preset_of
 from studies.measures.verdicts import Verdict
 from studies.score.report import swept, table_of

@@ -15,7 +15,7 @@ from analytic.response import Response
 from engines import ENGINES, Scene
 from engines.registry import OWN, UnloadableError, named
 from engines.scene import perhaps
-from studies.kit.arguments import (
+from studies.old.arguments import (
     BadInputError,
     Out,
     Place,
@@ -24,13 +24,13 @@ from studies.kit.arguments import (
     refuse_repeats,
     several_or_none,
 )
-from studies.kit.foreign import apart
-from studies.kit.jobs import Job, summary
-from studies.kit.jobs import ask as plain
-from studies.kit.journal import Row
-from studies.kit.options import DEFAULT_RUNNING, Running
-from studies.kit.plan import Plan, by_label, carry_out
-from studies.kit.provenance import write_text
+from studies.old.foreign import apart
+from studies.old.jobs import Job, summary
+from studies.old.jobs import ask as plain
+from studies.old.journal import Row
+from studies.old.options import DEFAULT_RUNNING, Running
+from studies.old.plan import Plan, by_label, carry_out
+from studies.old.provenance import write_text
 from studies.measures.verdicts import BANDS
 from studies.precision import study as precision
 from studies.scenes import cases as scenes

@@ -1,6 +1,6 @@
 """Stiff and extreme cases: what stays finite, right and accurate."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="stability",

@@ -15,8 +15,8 @@ import numpy as np
 from analytic import simulate
 from analytic.response import Response
 from studies.cases.extreme import Extreme, contact_settings, takes_spring
-from studies.kit.jobs import Job, ask
-from studies.kit.journal import Row
+from studies.old.jobs import Job, ask
+from studies.old.journal import Row
 from studies.measures.energy import growth
 from studies.measures.verdicts import ENERGY_BAND, Verdict, invalidity, judge
 from studies.sources.registry import Source, resolve

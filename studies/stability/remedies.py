@@ -6,7 +6,7 @@ from typing import Any
 from analytic.response import Response
 from engines.declaration import Stepping
 from studies.cases.extreme import Extreme
-from studies.kit.jobs import Job, ask
+from studies.old.jobs import Job, ask
 from studies.measures.verdicts import ACCEPTED, judge
 from studies.sources.registry import Source, resolve
 

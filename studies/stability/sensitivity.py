@@ -13,8 +13,8 @@ import pandas as pd
 from analytic import conditioning, simulate
 from analytic.response import Response
 from studies.cases.extreme import Extreme
-from studies.kit.jobs import Job, summary
-from studies.kit.journal import Row
+from studies.old.jobs import Job, summary
+from studies.old.journal import Row
 from studies.sources.registry import resolve
 
 QUANTITIES = ("amplitude", "width", "friction")

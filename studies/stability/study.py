@@ -13,14 +13,14 @@ from analytic import simulate
 from analytic.response import Reason, Response
 from studies.cases.extreme import Extreme, extremes
 from studies.drawing.kept import tell
-from studies.kit.arguments import Out
-from studies.kit.jobs import Job, summary
-from studies.kit.jobs import ask as plain
-from studies.kit.journal import Row
-from studies.kit.naming import Sources
-from studies.kit.options import PATIENT_RUNNING, PatientRunning
-from studies.kit.plan import Plan, by_label, carry_out
-from studies.kit.tables import table_in, write_table
+from studies.old.arguments import Out
+from studies.old.jobs import Job, summary
+from studies.old.jobs import ask as plain
+from studies.old.journal import Row
+from studies.old.naming import Sources
+from studies.old.options import PATIENT_RUNNING, PatientRunning
+from studies.old.plan import Plan, by_label, carry_out
+from studies.old.tables import table_in, write_table
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, BANDS, Verdict, friction_of, invalidity, judge
 from studies.measures.words import NAMED, each_out_of, listed, out_of

@@ -1,6 +1,6 @@
 """From what users see to the setting that mends it."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="symptoms",

@@ -18,8 +18,8 @@ from engines import ENGINES, Scene
 from engines.parts.factors import BEST, DEFAULT, MOVING_BASE, OWN_STEPS
 from engines.parts.script import Script
 from studies.cases.variants import variants
-from studies.kit.journal import Row
-from studies.kit.tables import read_table
+from studies.old.journal import Row
+from studies.old.tables import read_table
 from studies.measures.formulas import at_step, by_step
 
 BLOCK = RigidBlock(width=0.5, height=1.5)

@@ -10,16 +10,16 @@ import pandas as pd
 
 from engines import ENGINES
 from studies.drawing.kept import WIDTH, as_text, keep
-from studies.kit.arguments import (
+from studies.old.arguments import (
     BadInputError,
     NotNegative,
     Place,
     Positive,
     as_bad_input,
 )
-from studies.kit.naming import Engines
-from studies.kit.options import DEFAULT_RUNNING, check_written
-from studies.kit.plan import Plan, carry_out
+from studies.old.naming import Engines
+from studies.old.options import DEFAULT_RUNNING, check_written
+from studies.old.plan import Plan, carry_out
 from studies.measures.published import column_of, published_in, too_slippery
 from studies.measures.words import listed, part
 from studies.symptoms import STUDY

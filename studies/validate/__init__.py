@@ -1,6 +1,6 @@
 """Random cases that nothing was tuned on."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="validate",

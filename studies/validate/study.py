@@ -12,13 +12,13 @@ import pandas as pd
 
 from studies.cases.drawn import Drawn, draw
 from studies.drawing.kept import tell
-from studies.kit import provenance
-from studies.kit.arguments import Count, Out, Yes, one_of
-from studies.kit.jobs import Job
-from studies.kit.naming import CORE, Sources
-from studies.kit.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
-from studies.kit.plan import Plan, by_label, carry_out
-from studies.kit.tables import write_table
+from studies.old import provenance
+from studies.old.arguments import Count, Out, Yes, one_of
+from studies.old.jobs import Job
+from studies.old.naming import CORE, Sources
+from studies.old.options import DEFAULT_RUNNING, OWN_EFFORT, EffortOptions, Running
+from studies.old.plan import Plan, by_label, carry_out
+from studies.old.tables import write_table
 from studies.measures.differences import (
     WELL_CONDITIONED,
     sensitivity_of,

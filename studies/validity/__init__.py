@@ -1,6 +1,6 @@
 """Where the reference is valid, and what engines do beyond."""
 
-from studies.kit.study import Chapter, Study
+from studies.old.study import Chapter, Study
 
 STUDY = Study(
     name="validity",

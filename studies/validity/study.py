@@ -15,13 +15,13 @@ from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Outcome, Reason, Response
 from studies.cases.extreme import Extreme
 from studies.drawing.kept import tell
-from studies.kit.arguments import BadInputError, Out
-from studies.kit.jobs import Job, summary
-from studies.kit.journal import Row
-from studies.kit.naming import EngineSources
-from studies.kit.options import DEFAULT_RUNNING, Running
-from studies.kit.plan import Plan, Tables, carry_out
-from studies.kit.tables import write_table
+from studies.old.arguments import BadInputError, Out
+from studies.old.jobs import Job, summary
+from studies.old.journal import Row
+from studies.old.naming import EngineSources
+from studies.old.options import DEFAULT_RUNNING, Running
+from studies.old.plan import Plan, Tables, carry_out
+from studies.old.tables import write_table
 from studies.measures.words import listed
 from studies.sources.registry import core_sources, resolve
 from studies.validity import STUDY

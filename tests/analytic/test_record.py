@@ -15,7 +15,7 @@ from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from engines.disclosure import Deviation
 from studies import respond
-from studies.kit.jobs import Job
+from studies.old.jobs import Job
 from studies.sources.registry import SOURCES
 
 WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])

@@ -20,8 +20,8 @@ from engines.registry import OWN
 from engines.run.drive import build, run, simulate_world
 from engines.world import Pose
 from studies.cases.variants import variants
-from studies.kit.executors import Local
-from studies.kit.jobs import Job
+from studies.old.executors import Local
+from studies.old.jobs import Job
 
 SIZE = {"width": 0.5, "height": 1.5}
 

@@ -22,8 +22,8 @@ from engines.run.drive import simulate_world
 from engines.scene import Scene
 from engines.world import Moment, Pose
 from studies.cases.drawn import RandomFrame
-from studies.kit.identity import Makers
-from studies.kit.jobs import Job, ask, summary
+from studies.old.identity import Makers
+from studies.old.jobs import Job, ask, summary
 from studies.sources.registry import Source
 
 STACKERS = ("pybullet", "box2d", "dart")

@@ -31,9 +31,9 @@ from studies.advise.evidence import (
 from studies.advise.steps import off, worth_trying
 from studies.advise.words import literal
 from studies.cases.drawn import draw
-from studies.kit.journal import PROVENANCE
-from studies.kit.provenance import seal
-from studies.kit.tables import table_in
+from studies.old.journal import PROVENANCE
+from studies.old.provenance import seal
+from studies.old.tables import table_in
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.published import PUBLISHED
 

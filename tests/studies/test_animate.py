@@ -19,10 +19,10 @@ from studies.animate.study import most_different, shown
 from studies.drawing import film as film_module
 from studies.drawing.block import outlines
 from studies.drawing.film import GifWriter, Stage, verdict
-from studies.kit.arguments import BadInputError
-from studies.kit.executors import Local
-from studies.kit.posing import Posed
-from studies.kit.provenance import seal
+from studies.old.arguments import BadInputError
+from studies.old.executors import Local
+from studies.old.posing import Posed
+from studies.old.provenance import seal
 
 
 @pytest.mark.parametrize("theta", [0.3, -0.3])

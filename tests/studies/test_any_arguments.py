@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 
 from analytic.response import Reason, Response
 from studies.__main__ import COMMANDS, run
-from studies.kit import app, plan
-from studies.kit.app import make_app
-from studies.kit.executors import Local
-from studies.kit.journal import FolderError
+from studies.old import app, plan
+from studies.old.app import make_app
+from studies.old.executors import Local
+from studies.old.journal import FolderError
 from studies.page import report
 
 pytestmark = pytest.mark.processes
@@ -91,7 +91,7 @@ def place(tmp_path_factory):
         patch.setattr(Local, "_in_processes", give_up)
         patch.setattr(report, "_prepare", refuse)
         patch.setattr("studies.drawing.film.write_film", lambda *_: None)
-        patch.setattr("studies.kit.cluster.CONNECT_S", 0.5)
+        patch.setattr("studies.old.cluster.CONNECT_S", 0.5)
         yield folder
     assert Path.cwd() == kept
 

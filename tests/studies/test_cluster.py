@@ -38,12 +38,12 @@ from given import BLOCK, FULL_SINE
 
 from analytic import simulate
 from studies.__main__ import run
-from studies.kit import cluster
-from studies.kit.cluster import Cluster, ClusterError
-from studies.kit.jobs import summary
-from studies.kit.options import Running
-from studies.kit.plan import fill
-from studies.kit.runner import run_jobs
+from studies.old import cluster
+from studies.old.cluster import Cluster, ClusterError
+from studies.old.jobs import summary
+from studies.old.options import Running
+from studies.old.plan import fill
+from studies.old.runner import run_jobs
 from studies.sources.registry import SOURCES, Source, resolve
 from studies.validate import STUDY
 from studies.validate.study import plan

@@ -35,7 +35,7 @@ from studies.contact.study import (
     unchanged,
     variant_table,
 )
-from studies.kit.jobs import ask
+from studies.old.jobs import ask
 from studies.sources.registry import resolve
 
 CASE = next(case for _, case in cases(True) if case.pulse == "full-sine")

@@ -10,7 +10,7 @@ from analytic import simulate
 from studies.__main__ import run
 from studies.defaults import study
 from studies.defaults.figure import COLOURS, LABELS, draw_maps
-from studies.kit.jobs import summary
+from studies.old.jobs import summary
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST
 
 

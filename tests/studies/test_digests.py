@@ -12,9 +12,9 @@ from commanding import CASE, refused
 
 from studies.__main__ import run
 from studies.advise.evidence import RANDOM, TABLES
-from studies.kit.journal import seal as sealed_line
-from studies.kit.journal import unseal
-from studies.kit.provenance import check, digest, seal
+from studies.old.journal import seal as sealed_line
+from studies.old.journal import unseal
+from studies.old.provenance import check, digest, seal
 from studies.measures import halving
 from studies.measures.published import PUBLISHED
 from studies.page import readme

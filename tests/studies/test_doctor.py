@@ -10,7 +10,7 @@ import pytest
 from analytic import simulate
 from studies.__main__ import run
 from studies.doctor import study as doctor
-from studies.kit.provenance import version_of
+from studies.old.provenance import version_of
 from studies.sources.registry import SOURCES, Source, resolve
 
 pytestmark = pytest.mark.processes

@@ -11,12 +11,12 @@ from analytic import SinePulse
 from analytic.response import Outcome, Response
 from engines.declaration import Engine
 from studies.__main__ import run
-from studies.kit import identity, provenance
-from studies.kit.jobs import Job
-from studies.kit.journal import FolderError
-from studies.kit.options import Running
-from studies.kit.plan import Plan, fill
-from studies.kit.study import Study
+from studies.old import identity, provenance
+from studies.old.jobs import Job
+from studies.old.journal import FolderError
+from studies.old.options import Running
+from studies.old.plan import Plan, fill
+from studies.old.study import Study
 
 STUDY = Study(name="made-up", module="studies.sweep.study", help="", tables=("made-up.csv",))
 SOURCES = ("exact", "pymunk", "box2d")

@@ -5,7 +5,7 @@ import shutil
 import pandas as pd
 import pytest
 
-from studies.kit import app
+from studies.old import app
 from studies.measures.equality import MEASURED, SAME
 from studies.measures.published import PUBLISHED, columns
 

@@ -12,7 +12,7 @@ from engines import ENGINES
 from studies import respond
 from studies.__main__ import run
 from studies.estimate import study
-from studies.kit.jobs import Job
+from studies.old.jobs import Job
 from studies.measures.halving import (
     ELSEWHERE,
     FACTORS,

@@ -12,7 +12,7 @@ from commanding import refused
 
 from analytic import RigidBlock, RockingFrame, SinePulse, SlidingBlock, simulate
 from studies.__main__ import COMMANDS, run
-from studies.kit import standing
+from studies.old import standing
 
 SIZES = {"width": 0.5, "height": 1.5}
 PULSE = SinePulse.in_g(0.5, omega=12.0, half_cycles=2)

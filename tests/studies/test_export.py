@@ -20,7 +20,7 @@ from engines.declaration import UNTUNED, Stepping
 from engines.run.drive import run
 from studies.__main__ import run as rocking
 from studies.export.study import Exported, files, script_of, unwritten
-from studies.kit.provenance import project_version, version_of
+from studies.old.provenance import project_version, version_of
 from studies.scenes.cases import ways
 
 RECORD = Record(samples=(0.0, 3.0, 4.5, -2.0, -5.0, 1.0, 0.0), dt=0.15)

@@ -12,9 +12,9 @@ from PIL.Image import Image
 from analytic.response import Response
 from studies.__main__ import run
 from studies.catalogue import STUDIES
-from studies.kit.executors import Local
-from studies.kit.journal import FolderError
-from studies.kit.plan import Plan, fill
+from studies.old.executors import Local
+from studies.old.journal import FolderError
+from studies.old.plan import Plan, fill
 from studies.sweep import STUDY as SWEEP
 
 ASKING = [

@@ -2,7 +2,7 @@
 
 import pytest
 
-from studies.kit.fingerprint import everything, reached
+from studies.old.fingerprint import everything, reached
 
 MADE_UP = {
     "analytic/__init__.py": "from .inner.deep import root",
@@ -37,12 +37,12 @@ def number(x): ...
     "engines/settings.py": "import engines.parts\nengines.parts.prepare()\n\nclass Settings: ...",
     "engines/parts.py": "def prepare(): ...\n\ndef unused(): ...",
     "studies/__init__.py": "",
-    "studies/kit.py": "import analytic as a\nfrom engines import settings\n\nKEPT = a.root",
+    "studies/old.py": "import analytic as a\nfrom engines import settings\n\nKEPT = a.root",
     "studies/swing.py": """
 from studies import kit as k
 
 def late():
-    from studies.kit import settings
+    from studies.old import settings
     return settings.Settings()
 
 def early():
@@ -78,8 +78,8 @@ ROOTED = {"analytic.root", "analytic.inner.deep.root", "analytic.inner.deep.push
     "analytic.forces.push",
     "analytic.forces.LEAST",
 }
-EARLY = ROOTED | {"studies.swing.early", "studies.swing.k", "studies.kit.KEPT", "studies.kit.a"}
-LATE = {"studies.swing.late", "studies.kit.settings", "engines.settings.Settings"} | {
+EARLY = ROOTED | {"studies.swing.early", "studies.swing.k", "studies.old.KEPT", "studies.old.a"}
+LATE = {"studies.swing.late", "studies.old.settings", "engines.settings.Settings"} | {
     "engines.settings.engines",
     "engines.parts.prepare",
 }
@@ -103,7 +103,7 @@ def test_names_are_followed_wherever_they_lead(name, expected, tmp_path):
 
 
 def test_what_is_cut_is_not_followed(tmp_path):
-    cut = {("studies.kit", "KEPT")}
+    cut = {("studies.old", "KEPT")}
     assert found("early", tmp_path, cut=cut) == {"studies.swing.early", "studies.swing.k"}
 
 
@@ -121,9 +121,9 @@ def test_what_is_cut_is_not_followed(tmp_path):
     ],
 )
 def test_comments_docstrings_and_layout_do_not_count(text, same, tmp_path):
-    place = [("studies.kit", "find")]
-    before = laid_out(tmp_path / "a", **{"studies/kit.py": "def find():\n    return 1 + 2"})
-    after = laid_out(tmp_path / "b", **{"studies/kit.py": text})
+    place = [("studies.old", "find")]
+    before = laid_out(tmp_path / "a", **{"studies/old.py": "def find():\n    return 1 + 2"})
+    after = laid_out(tmp_path / "b", **{"studies/old.py": text})
     assert (reached(place, before).digests() == reached(place, after).digests()) is same
 
 

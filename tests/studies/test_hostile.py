@@ -22,13 +22,13 @@ from engines.run.drive import simulate_world
 from engines.run.monitor import compile_monitor
 from engines.scene import Scene
 from studies.__main__ import run
-from studies.kit import foreign
-from studies.kit.arguments import BadInputError
-from studies.kit.executors import Local
-from studies.kit.fingerprint import names_of, reached
-from studies.kit.identity import Makers
-from studies.kit.jobs import Job, ask, summary
-from studies.kit.runner import run_jobs
+from studies.old import foreign
+from studies.old.arguments import BadInputError
+from studies.old.executors import Local
+from studies.old.fingerprint import names_of, reached
+from studies.old.identity import Makers
+from studies.old.jobs import Job, ask, summary
+from studies.old.runner import run_jobs
 from studies.score import study as score
 from studies.sources.registry import SOURCES, Source
 

@@ -15,12 +15,12 @@ from studies.__main__ import run
 from studies.catalogue import CHAPTERS
 from studies.contact import study as contact
 from studies.histories import study as histories
-from studies.kit import fingerprint, identity, plan
-from studies.kit.fingerprint import PACKAGES, ROOT, read
-from studies.kit.identity import FOUND_BY_NAME, Makers, changed
-from studies.kit.jobs import Job, ask, summary
-from studies.kit.provenance import record_of
-from studies.kit.study import Study
+from studies.old import fingerprint, identity, plan
+from studies.old.fingerprint import PACKAGES, ROOT, read
+from studies.old.identity import FOUND_BY_NAME, Makers, changed
+from studies.old.jobs import Job, ask, summary
+from studies.old.provenance import record_of
+from studies.old.study import Study
 from studies.sources.registry import Source
 from studies.stability import study as stability
 
@@ -40,7 +40,7 @@ MUJOCO = {"mujoco", "mujoco:naive"}
 LOOKUPS = FOUND_BY_NAME | {
     ("engines.registry", "Engines"),
     ("engines.scene", "one_of"),
-    ("studies.kit.jobs", "Job"),
+    ("studies.old.jobs", "Job"),
     ("studies.sources.registry", "Source"),
 }
 """What poses a question or refuses it, and finds by its name whom it is put to."""
@@ -165,7 +165,7 @@ EDITS = {
     "what is watched": ("engines/watching/observe.py", "return ", "return 1 + ", ENGINE),
     "a kernel": ("analytic/kernels/notes.py", "return n + 1", "return n + 2", {"exact"}),
     "a peer": ("studies/sources/scipy_peers.py", "return ", "return 1 + ", {"rk45"}),
-    "the reduction": ("studies/kit/jobs.py", '"outcome": r', '"outcome": 1 * r', set(SOURCES)),
+    "the reduction": ("studies/old/jobs.py", '"outcome": r', '"outcome": 1 * r', set(SOURCES)),
     "a registry's line": (
         *("engines/registry.py", "OWN = {", 'OWN = {"ninth": "engines.ninth:ENGINE",'),
         set(),
@@ -185,8 +185,8 @@ EDITS = {
     "words": ("studies/measures/words.py", "return ", "return 1 + ", set()),
     "a figure": ("studies/sweep/figure.py", "return ", "return 1 + ", set()),
     "a command": ("studies/sweep/study.py", "return ", "return 1 + ", set()),
-    "the command line": ("studies/kit/arguments.py", "return ", "return 1 + ", set()),
-    "a tabulation": ("studies/kit/tables.py", "return ", "return 1 + ", set()),
+    "the command line": ("studies/old/arguments.py", "return ", "return 1 + ", set()),
+    "a tabulation": ("studies/old/tables.py", "return ", "return 1 + ", set()),
     "a comment": ("engines/run/drive.py", "LOOK_AROUND = 256", "# 256\nLOOK_AROUND = 256", set()),
     "a docstring": ("engines/run/drive.py", '"""Steps between', '"""How many steps between', set()),
 }
@@ -231,10 +231,10 @@ def test_the_reference_that_a_study_compares_with_is_in_its_rows(copy):
             True,
             set(),
         ),
-        ("studies/kit/plan.py", "return {name", "return {str(name)", False, set()),
+        ("studies/old/plan.py", "return {name", "return {str(name)", False, set()),
         ("studies/histories/study.py", "report(", "repr(", False, set()),
         ("engines/box2d/build.py", "return ", "return 0 or ", False, {"box2d"}),
-        ("studies/kit/jobs.py", '"outcome": r', '"outcome": 1 * r', False, set(SOURCES)),
+        ("studies/old/jobs.py", '"outcome": r', '"outcome": 1 * r', False, set(SOURCES)),
     ],
 )
 def test_a_table_is_of_its_rows_and_its_tabulation(file, old, new, tables, rows, copy):
@@ -323,4 +323,4 @@ def test_what_a_row_runs_through_was_found(study, chapter, monkeypatch, tmp_path
         run(study.command_line(chapter, tmp_path, full=False))
     missed, count = seen.value.args
     assert count > 8
-    assert missed - {("studies.kit.plan", "fill"), *LOOKUPS} == set()
+    assert missed - {("studies.old.plan", "fill"), *LOOKUPS} == set()

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from studies.catalogue import CHAPTERS, STUDIES
-from studies.kit.drafts import draft
-from studies.kit.journal import FolderError, named, open_journal, rows_in, seal, unseal
+from studies.old.drafts import draft
+from studies.old.journal import FolderError, named, open_journal, rows_in, seal, unseal
 from studies.measures.published import PUBLISHED
 from studies.page.facts import FIRST
 

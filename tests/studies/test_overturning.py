@@ -13,7 +13,7 @@ from analytic.criteria import overturning_amplitude
 from analytic.maps import Modes
 from studies.__main__ import run
 from studies.cases.window import AXES, LIMITS, Window
-from studies.kit.tables import table_in
+from studies.old.tables import table_in
 from studies.measures.published import PUBLISHED
 from studies.overturning.edges import WIDTH, find_edges, intervals
 from studies.overturning.engine_edges import (

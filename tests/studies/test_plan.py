@@ -24,13 +24,13 @@ from studies.cases.paper import HISTORIES as PANELS
 from studies.cases.refusal import BadInputError
 from studies.histories import STUDY as HISTORIES
 from studies.histories import study as histories
-from studies.kit import provenance
-from studies.kit.jobs import Job
-from studies.kit.journal import FolderError
-from studies.kit.options import DEFAULT_RUNNING, PatientRunning
-from studies.kit.plan import Plan, by_label, carry_out, fill
-from studies.kit.study import Study
-from studies.kit.tables import read_table, write_table
+from studies.old import provenance
+from studies.old.jobs import Job
+from studies.old.journal import FolderError
+from studies.old.options import DEFAULT_RUNNING, PatientRunning
+from studies.old.plan import Plan, by_label, carry_out, fill
+from studies.old.study import Study
+from studies.old.tables import read_table, write_table
 from studies.measures.published import PUBLISHED
 from studies.scenes import STUDY as SCENES
 from studies.scenes import summaries as scenes
@@ -149,7 +149,7 @@ def test_the_first_run_after_an_installation_is_told_from_later_ones(tmp_path):
 from pathlib import Path
 import numpy as np
 from analytic.cases import fill_restitution
-from studies.kit.provenance import begin
+from studies.old.provenance import begin
 print(begin(Path("a.json"), {}, {})["runs"][-1]["first"])
 fill_restitution.run(np.ones(1), np.ones(1))
 print(begin(Path("a.json"), {}, {})["runs"][-1]["first"])

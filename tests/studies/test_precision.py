@@ -13,7 +13,7 @@ from engines import core_engines, installed_engines
 from studies import respond
 from studies.cases.paper import HISTORIES
 from studies.cases.selection import chosen_cases
-from studies.kit.jobs import ask
+from studies.old.jobs import ask
 from studies.measures.energy import energy_drift
 from studies.precision.figure import style_of
 from studies.precision.methods import METHODS, methods_of

@@ -18,7 +18,7 @@ from engines import ENGINES
 from engines.registry import OWN
 from studies.__main__ import COMMANDS, run
 from studies.catalogue import CHAPTERS
-from studies.kit.app import make_app
+from studies.old.app import make_app
 from studies.measures.published import PUBLISHED
 from studies.page import facts
 from studies.sources.registry import expanded, grouped, resolve

@@ -21,11 +21,11 @@ from given import BLOCK, FULL_SINE
 
 from analytic import SinePulse
 from analytic.response import Response
-from studies.kit.executors import Local
-from studies.kit.jobs import Job, summary
-from studies.kit.pool import Pool
-from studies.kit.refusing import reason
-from studies.kit.runner import run_jobs
+from studies.old.executors import Local
+from studies.old.jobs import Job, summary
+from studies.old.pool import Pool
+from studies.old.refusing import reason
+from studies.old.runner import run_jobs
 from studies.sources.registry import SOURCES, Source
 
 pytestmark = pytest.mark.processes
@@ -52,7 +52,7 @@ def test_a_signal_while_modules_are_loaded_is_no_traceback(loading, number, coun
 
 LOST = """
 import os, signal
-from studies.kit import signals
+from studies.old import signals
 
 class Swallows:
     def __del__(self):
@@ -77,7 +77,7 @@ def test_a_signal_that_a_destructor_swallows_ends_the_run_after_all():
 
 def test_a_signal_that_is_to_be_ignored_stays_so():
     program = (
-        "import signal; from studies.kit import signals; signals.install();"
+        "import signal; from studies.old import signals; signals.install();"
         "print(signal.getsignal(signal.SIGHUP) == signal.SIG_IGN)"
     )
     done = python("-c", program, before=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
@@ -225,7 +225,7 @@ import sys
 import numpy as np
 from analytic import Record, RigidBlock, SinePulse
 from analytic.kernels.compiled import Kernel, compile_all
-from studies.kit.jobs import Job, ask, short
+from studies.old.jobs import Job, ask, short
 from studies.sources.registry import resolve
 
 def loaded():

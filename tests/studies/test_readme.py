@@ -11,7 +11,7 @@ from commanding import PAGES, PROSE, PUBLISHED_PAGES, ROOT, refused
 
 from engines.parts.factors import BEST, DEFAULT, LEFT_OUT
 from studies.catalogue import CHAPTERS
-from studies.kit.tables import read_table
+from studies.old.tables import read_table
 from studies.page import facts, hero, readme, scene_facts
 from studies.page.engine_facts import objections, once, prices, rules
 from studies.page.readme import table

@@ -17,15 +17,15 @@ from given import BLOCK, FULL_SINE
 
 from analytic import RigidBlock, SinePulse, simulate
 from studies.__main__ import run
-from studies.kit import signals
-from studies.kit.executors import Local
-from studies.kit.identity import Makers
-from studies.kit.jobs import Job, ask, summary
-from studies.kit.journal import FolderError, open_journal, seal, unseal
-from studies.kit.options import Running
-from studies.kit.plan import fill
-from studies.kit.provenance import subject
-from studies.kit.runner import run_jobs
+from studies.old import signals
+from studies.old.executors import Local
+from studies.old.identity import Makers
+from studies.old.jobs import Job, ask, summary
+from studies.old.journal import FolderError, open_journal, seal, unseal
+from studies.old.options import Running
+from studies.old.plan import fill
+from studies.old.provenance import subject
+from studies.old.runner import run_jobs
 from studies.sources.registry import SOURCES, Effort, Source, resolve
 from studies.sweep import STUDY
 from studies.sweep import study as sweep

@@ -17,8 +17,8 @@ from engines.layouts import layout_of
 from studies import respond, side_by_side
 from studies.__main__ import run
 from studies.drawing.block import draw_scene
-from studies.kit.jobs import Job, ask
-from studies.kit.tables import read_table
+from studies.old.jobs import Job, ask
+from studies.old.tables import read_table
 from studies.measures.published import PUBLISHED
 from studies.measures.wrongness import KINDS
 from studies.scenes.cases import RIDE, floors, slides

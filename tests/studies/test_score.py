@@ -19,12 +19,12 @@ from engines.registry import announce
 from engines.undeclared import undeclared
 from studies import respond
 from studies.__main__ import COMMANDS, run
-from studies.kit.app import make_app
-from studies.kit.fingerprint import ROOT
-from studies.kit.jobs import Job
-from studies.kit.options import Running
-from studies.kit.plan import Plan, fill
-from studies.kit.provenance import record_of
+from studies.old.app import make_app
+from studies.old.fingerprint import ROOT
+from studies.old.jobs import Job
+from studies.old.options import Running
+from studies.old.plan import Plan, fill
+from studies.old.provenance import record_of
 from studies.score import STUDY
 from studies.score import report as score_report
 from studies.score import study as score

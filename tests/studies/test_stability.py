@@ -10,9 +10,9 @@ import pytest
 from analytic import Outcome, Response, simulate
 from analytic.response import History, Impact
 from studies.cases.extreme import QUICK, Extreme, contact_settings, extremes
-from studies.kit.jobs import ask
-from studies.kit.options import Running
-from studies.kit.plan import fill
+from studies.old.jobs import ask
+from studies.old.options import Running
+from studies.old.plan import fill
 from studies.measures.differences import with_conditioning
 from studies.measures.energy import energy, growth
 from studies.measures.verdicts import Verdict, invalidity, judge

@@ -18,7 +18,7 @@ from studies.__main__ import run
 from studies.cases.paper import HISTORIES, sweep_cases
 from studies.catalogue import STUDIES
 from studies.histories import study as histories
-from studies.kit.journal import FolderError
+from studies.old.journal import FolderError
 from studies.sources.registry import SOURCES, Source, UnknownSourceError, resolve
 
 HERE = installed_engines()

@@ -13,9 +13,9 @@ from engines.layouts import BEAM_DEPTH, SPACING
 from studies import respond
 from studies.__main__ import run
 from studies.cases.drawn import FRICTION, LEAST_NORMAL, SLIDES, TIPS, draw, everything, fate_of
-from studies.kit.journal import FolderError
-from studies.kit.options import EffortOptions, Running
-from studies.kit.plan import fill
+from studies.old.journal import FolderError
+from studies.old.options import EffortOptions, Running
+from studies.old.plan import fill
 from studies.measures.differences import (
     sensitivity_of,
     with_conditioning,

@@ -11,7 +11,7 @@ from analytic import Outcome, RigidBlock, SinePulse, simulate
 from analytic.response import Reason, Response
 from studies import respond
 from studies.__main__ import run
-from studies.kit.jobs import Job
+from studies.old.jobs import Job
 from studies.validity import study as validity
 from studies.validity.study import LIFTED_WIDTHS, SLID_WIDTHS, _reduce, posed, reference_map
 

@@ -15,7 +15,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
-from studies.kit.drafts import draft
+from studies.old.drafts import draft
 
 Row = dict[str, Any]
 """One line of a table."""

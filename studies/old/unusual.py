@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from analytic.block import GRAVITY
 from analytic.motion import Motion
 from analytic.record import Record
-from studies.kit.posing import Excitation
+from studies.old.posing import Excitation
 
 SMALL_M, LARGE_M = 0.005, 20.0
 """Sizes [m] beyond which a block is unusual."""

@@ -14,17 +14,17 @@ import pandas as pd
 
 from analytic.kernels.compiled import compile_all
 from analytic.response import Response
-from studies.kit import elsewhere, provenance
-from studies.kit.arguments import BadInputError
-from studies.kit.identity import Makers
-from studies.kit.jobs import Job, ask, summary
-from studies.kit.journal import JOURNAL, PROVENANCE, FolderError, Journal, Row, open_journal
-from studies.kit.options import DEFAULT_RUNNING, Running
-from studies.kit.provenance import seal
-from studies.kit.refusing import one_line
-from studies.kit.runner import Reduce, exit_code, run_jobs
-from studies.kit.study import Study
-from studies.kit.tables import with_head, write_table
+from studies.old import elsewhere, provenance
+from studies.old.arguments import BadInputError
+from studies.old.identity import Makers
+from studies.old.jobs import Job, ask, summary
+from studies.old.journal import JOURNAL, PROVENANCE, FolderError, Journal, Row, open_journal
+from studies.old.options import DEFAULT_RUNNING, Running
+from studies.old.provenance import seal
+from studies.old.refusing import one_line
+from studies.old.runner import Reduce, exit_code, run_jobs
+from studies.old.study import Study
+from studies.old.tables import with_head, write_table
 from studies.sources.registry import Source
 
 Tables: TypeAlias = "Mapping[str, pd.DataFrame]"

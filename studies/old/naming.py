@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from engines import ENGINES, core_engines
 from engines.scene import perhaps
-from studies.kit.arguments import BadInputError, refuse_repeats
+from studies.old.arguments import BadInputError, refuse_repeats
 from studies.sources.registry import (
     GROUPS,
     SOURCES,

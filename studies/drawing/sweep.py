@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,14 +12,11 @@ from matplotlib.figure import Figure
 
 from engines.declaration import AT_REST
 from studies.drawing.facets import STRIP, cells, dot, error_scale, key, preset_dots, rows
-from studies.drawing.kept import Pictures
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import Style, engine_title, line_of, name_of, style_of, title_of
-from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import in_order, is_engine, preset_of, told
-from studies.measures.words import out_of, part
+from studies.kit.say import out_of, part
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wrong_in
-from studies.sweep.study import over_all, preset_table, read
 
 OVERTURNED = "overturned"
 TOP, LINE = 1.2, 0.085
@@ -137,7 +133,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     Parameters
     ----------
     table : DataFrame
-        From `studies.sweep.study.preset_table`.
+        From `studies.sweep.preset_table`.
     """
     table = table[table["preset"] != AT_REST]  # a variant, which the table has
     engines, presets = list(dict.fromkeys(table["engine"])), in_order(table["preset"])
@@ -246,17 +242,3 @@ def _strips(axes: Axes, mine: pd.DataFrame, sources: list[str]) -> Any:
     axes.grid(axis="y", which="minor", color="white", linewidth=1.2)
     axes.tick_params(which="minor", length=0)
     return shown
-
-
-def pictures(folder: Path) -> Pictures:
-    """Draw every figure of a folder from its sweep.csv alone.
-
-    Engines with several presets each are drawn preset by preset, and all of them in one figure.
-    """
-    compared = with_reference(read(folder))
-    table = preset_table(over_all(summarize(compared)))
-    each = {str(n): rows for n, rows in compared.groupby("figure", sort=False)}
-    if table.empty or table["preset"].nunique() < 2:
-        return {f"figure-{n}": draw_sweep(rows) for n, rows in each.items()}
-    by_preset = {f"presets-{n}": draw_by_preset(rows) for n, rows in each.items()}
-    return {"overview": draw_overview(table), **by_preset}

@@ -17,7 +17,7 @@ from analytic.start import LEAST_TILT
 from engines.layouts import System
 from studies.cases.accelerograms import Baseline, Units, read_record
 from studies.cases.paper import PULSES
-from studies.kit.arguments import (
+from studies.old.arguments import (
     BadInputError,
     Finite,
     HalfCycles,

@@ -18,9 +18,9 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from studies.kit.drafts import draft
-from studies.kit.fingerprint import ROOT
-from studies.kit.journal import PACKED, PROVENANCE, FolderError
+from studies.old.drafts import draft
+from studies.old.fingerprint import ROOT
+from studies.old.journal import PACKED, PROVENANCE, FolderError
 
 NOT_INSTALLED = "not installed"
 """What stands for the version of a package that is not there."""

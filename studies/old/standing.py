@@ -11,7 +11,7 @@ from analytic.block import RigidBlock
 from analytic.frame import RockingFrame
 from analytic.slide import SlidingBlock
 from engines.layouts import System
-from studies.kit.arguments import (
+from studies.old.arguments import (
     BadInputError,
     Count,
     Positive,
@@ -20,7 +20,7 @@ from studies.kit.arguments import (
     refuse_given,
     required,
 )
-from studies.kit.posing import Excitation, Posed
+from studies.old.posing import Excitation, Posed
 
 MOST_M = 200.0
 """Size [m] up to which a block may be one; 300 are a narrow cabinet in millimetres."""

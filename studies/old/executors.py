@@ -16,9 +16,9 @@ from analytic.response import Reason, Response
 from engines import ENGINES
 from engines.parts.compiled import PACKAGE
 from engines.run.monitor import compile_monitor
-from studies.kit.jobs import Job, ask, short
-from studies.kit.pool import MEMORY_BYTES, OvertimeError, Pool, StartError, TaskError
-from studies.kit.refusing import one_line, say
+from studies.old.jobs import Job, ask, short
+from studies.old.pool import MEMORY_BYTES, OvertimeError, Pool, StartError, TaskError
+from studies.old.refusing import one_line, say
 from studies.sources.registry import Source
 
 Ask: TypeAlias = Callable[[Job, Source], Response]

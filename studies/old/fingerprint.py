@@ -3,7 +3,7 @@
 A function depends on its own definition and on every one that it mentions, directly or by way of
 others, in whichever module it stands and by whatever way it is imported. Statements that bind no
 name run when their module is imported, and count with all that is taken from it. Annotations are
-not followed, nor is text; what a name means only at run time is declared (`studies.kit.identity`).
+not followed, nor is text; what a name means only at run time is declared (`studies.old.identity`).
 """
 
 import ast

@@ -19,9 +19,9 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, Self
 
-from studies.kit.keeper import work_in_a_child
-from studies.kit.refusing import one_line
-from studies.kit.signals import left_to_this_process
+from studies.old.keeper import work_in_a_child
+from studies.old.refusing import one_line
+from studies.old.signals import left_to_this_process
 
 LOADING_S = 300.0
 """How long a process may take to load what a task needs [s]."""

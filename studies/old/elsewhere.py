@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from engines import ENGINES
-from studies.kit.identity import Makers, sorted_rows, why
-from studies.kit.jobs import Job
-from studies.kit.journal import JOURNAL, PROVENANCE, FolderError, Journal, Kept, Row, rows_of
-from studies.kit.provenance import record_of
-from studies.kit.refusing import say
+from studies.old.identity import Makers, sorted_rows, why
+from studies.old.jobs import Job
+from studies.old.journal import JOURNAL, PROVENANCE, FolderError, Journal, Kept, Row, rows_of
+from studies.old.provenance import record_of
+from studies.old.refusing import say
 from studies.sources.registry import resolve
 
 OPTION = "--also"

@@ -7,11 +7,11 @@ from contextlib import closing
 from tqdm import tqdm
 
 from analytic.response import Outcome, Response
-from studies.kit.executors import Executor
-from studies.kit.identity import Makers, sorted_rows, why
-from studies.kit.jobs import Job
-from studies.kit.journal import Journal, Row
-from studies.kit.refusing import say
+from studies.old.executors import Executor
+from studies.old.identity import Makers, sorted_rows, why
+from studies.old.jobs import Job
+from studies.old.journal import Journal, Row
+from studies.old.refusing import say
 
 _LABELS = (
     *("name", "record", "scale"),

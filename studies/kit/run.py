@@ -1,0 +1,251 @@
+"""Jobs side by side: measured where they may fail, kept in a store, counted by a bar."""
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from functools import partial
+from math import tan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from tqdm import tqdm
+
+from analytic.kernels.compiled import Kernel, compile_all
+from analytic.kernels.kept import are_compiled
+from analytic.motion import SinePulse
+from analytic.response import Outcome, Reason, Response
+from engines.parts.compiled import PACKAGE
+from engines.run.monitor import compile_monitor
+from studies.cases.refusal import BadInputError
+from studies.kit.identity import Maker, maker_of
+from studies.kit.jobs import Job, Row, ask, unanswered
+from studies.kit.options import Computing
+from studies.kit.say import say
+from studies.kit.store import Store
+from studies.kit.workers import MEMORY_BYTES, Lost, answers
+
+FEW = 32
+"""Jobs up to which to interpret takes less time than to load what is compiled."""
+COMPILING_S = 1800.0
+"""Nothing takes longer to compile [s]."""
+LABELS = (
+    *("name", "record", "scale"),
+    *("figure", "panel", "case", "aspect", "width_m", "omega_over_p"),
+)
+"""Columns that name a failed case."""
+
+Measure = Callable[[Job], Row]
+Rows = Iterator[tuple[int, Row]]
+"""The number of each job with what was measured of it, in any order."""
+Place = Callable[[Sequence[Job], Measure], Rows]
+"""Where jobs are run."""
+
+
+def here(jobs: Sequence[Job], measure: Measure) -> Rows:
+    """Yield the number and row of each job, all measured in this process."""
+    yield from ((number, measure(job)) for number, job in enumerate(jobs))
+
+
+def local(
+    jobs: Sequence[Job], measure: Measure, workers: int, limit_s: float, at_once: bool = False
+) -> Rows:
+    """Yield the number and row of each job: models in this process, engines in their own.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+    measure : callable
+        What makes of a job the columns of its row; a function of a module.
+    workers, limit_s : int, float
+        As for `studies.kit.workers.answers`.
+    at_once : bool, optional
+        Whether somebody waits for the rows and nobody for their run times: of a few jobs, nothing
+        is compiled.
+
+    Raises
+    ------
+    OSError
+        If no process can be started.
+    """
+    many = not at_once or len(jobs) > FEW
+    if sys.stderr.isatty():
+        Kernel.tell = say
+    if many:
+        compile_all()
+    loaded, apart = set[str](), []
+    for number, job in enumerate(jobs):
+        if job.needs_process:
+            apart.append(number)
+            continue
+        if many and job.source not in loaded:
+            loaded.add(job.source)
+            ask(job)  # to load what is compiled is no part of the first case's run time
+        yield number, measure(job)
+    if not apart:
+        return
+    if many:
+        _compile_for([jobs[number] for number in apart])
+    tasks = [(measure, jobs[number], many) for number in apart]
+    for place, row in answers(_measured, tasks, min(workers, len(tasks)), limit_s):
+        number = apart[place]
+        if isinstance(row, Lost):
+            row = lost_row(measure, jobs[number], _response_of(row))
+        yield number, row
+
+
+_loaded = set[str]()
+"""Sources whose kernels this process has loaded."""
+
+
+def _measured(measure: Measure, job: Job, many: bool) -> Row:
+    if many:
+        compile_all()
+        if job.asked.kind != "engine" and job.source not in _loaded:
+            _loaded.add(job.source)
+            ask(_short(job))
+    row = measure(job)
+    if str(row.get("message", "")).startswith(MemoryError.__name__):
+        row["message"] += f"; a process may allocate {MEMORY_BYTES / 1e9:g} GB"
+    return row
+
+
+def _response_of(lost: Lost) -> Response:
+    if lost.late:
+        return Response.failure(lost.why, reason=Reason.UNDECIDED)
+    return Response.failure(lost.why)
+
+
+def lost_row(measure: Measure, job: Job, response: Response) -> Row:
+    """Return the row of a job whose process has ended without an answer."""
+    with suppress(Exception):  # what ended the process may be the measure itself
+        return measure(replace(job, lost=response))
+    return unanswered(response.message)
+
+
+def _short(job: Job) -> Job:
+    """Return a job that takes no time and runs through the same compiled kernels."""
+    case, system = job.case, job.case.system
+    pulse = SinePulse(amplitude=2.0 * system.gravity * tan(system.alpha), omega=4.0 * system.p)
+    duration = None if case.duration is None else pulse.duration
+    times = None if case.times is None else np.linspace(0.0, pulse.duration, 3)
+    options = {name: value for name, value in job.options.items() if name != "step"}
+    return replace(
+        job, case=replace(case, motion=pulse, duration=duration, times=times), options=options
+    )
+
+
+def _compile_for(jobs: Sequence[Job]) -> None:
+    """Compile what the engines of jobs need, before any time limit holds; others then load it."""
+    first: dict[str, Job] = {}
+    for job in jobs:
+        if job.asked.engine and job.asked.declared.installed:
+            first.setdefault(job.source, job)
+    if not first:
+        return
+    if Kernel.tell is not None and not are_compiled(PACKAGE):
+        Kernel.tell("compiling what engines need, once: some 10 to 40 s")
+    ahead = [_short(job) for job in first.values() if job.asked.declared.compiles]
+    tasks = [(compile_monitor,), *((ask, job) for job in ahead)]
+    with suppress(Exception):  # the cases will say what is wrong
+        list(answers(_call, tasks, 1, COMPILING_S))
+
+
+def _call(call: Callable[..., Any], *given: Any) -> None:
+    call(*given)
+
+
+def place_of(running: Computing, *, at_once: bool = False) -> Place:
+    """Return where the options let jobs run; `at_once` as for `local`."""
+    if running.cluster is None:
+        return partial(local, workers=running.workers, limit_s=running.time_limit, at_once=at_once)
+    from studies.kit.cluster import on_cluster  # asyncio takes a tenth of a second to load
+
+    return partial(on_cluster, running.cluster, running.time_limit)
+
+
+def run(
+    jobs: Sequence[Job],
+    measure: Measure,
+    place: Place = here,
+    store: Store | None = None,
+    also: Sequence[Path] = (),
+) -> list[Row]:
+    """Run the jobs that a store has no row of, and return the rows of all in their order.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+    measure : callable
+        What makes of a job the columns that follow its labels and source, outcome among them.
+    place : callable, optional
+        Where they run: `place_of` options, or `here`.
+    store : Store, optional
+        Gets each row as soon as there is one; equal jobs share a row.
+    also : sequence of Path, optional
+        Folders whose rows are taken over.
+
+    Raises
+    ------
+    BadInputError
+        If a folder, a cluster or an option cannot be used.
+    """
+    labels = [{**job.labels, "source": job.source} for job in jobs]
+    if store is None:
+        rows = dict(place(jobs, measure))
+        return [{**labels[number], **rows[number]} for number in range(len(jobs))]
+    keys = [job.key for job in jobs]
+    by_key = dict(zip(keys, jobs, strict=True))
+    makers = makers_of(jobs, measure)
+    done = store.kept(by_key, makers)
+    for folder in also:
+        store.take(folder, by_key, makers)
+    done = store.kept(by_key, makers) if also else done
+    left = [number for number, key in enumerate(keys) if key not in done]
+    with (
+        _going_on(store, done, len(jobs)),
+        tqdm(total=len(jobs), initial=len(jobs) - len(left), disable=None, unit="case") as bar,
+    ):
+        for number, row in place([jobs[number] for number in left], measure):
+            key = keys[left[number]]
+            done[key] = {**labels[left[number]], **row}
+            store.add(key, done[key], makers[jobs[left[number]].source])
+            bar.update()
+    return [done[key] for key in keys]
+
+
+def makers_of(jobs: Sequence[Job], measure: Measure) -> dict[str, Maker]:
+    """Return what makes the rows of each source now."""
+    return {
+        name: maker_of(job.asked, measure)
+        for name, job in {job.source: job for job in jobs}.items()
+    }
+
+
+@contextmanager
+def _going_on(store: Store, done: dict[str, Row], count: int) -> Iterator[None]:
+    """Say of a run that ends early how many rows are kept, and how to go on."""
+    try:
+        yield
+    except (KeyboardInterrupt, BadInputError, OSError) as stop:
+        kept = f"{len(done)} of {count} rows are kept in {str(store.folder)!r}"
+        text = f"{kept}; the same command goes on from there"
+        if isinstance(stop, KeyboardInterrupt):
+            stop.args = (*stop.args[:1], text)
+            raise
+        if isinstance(stop, OSError) and stop.filename:
+            stop.strerror = f"{stop.strerror}; {text}"
+            raise
+        raise BadInputError(f"{stop}; {text}") from stop
+
+
+def exit_code(rows: Sequence[Row], shown: int = 10) -> int:
+    """Return 0 if every row is usable; else name some that failed on stderr and return 1."""
+    failed = [row for row in rows if row["outcome"] == Outcome.FAILED.value]
+    for row in failed[:shown]:
+        case = ", ".join(f"{name} {row[name]}" for name in row if name in LABELS)
+        print(f"failed: {row['source']}{case and ', '}{case}: {row['message']}", file=sys.stderr)
+    if len(failed) > shown:
+        print(f"failed: {len(failed) - shown} more", file=sys.stderr)
+    return 1 if failed else 0

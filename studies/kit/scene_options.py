@@ -1,0 +1,331 @@
+"""Options of a scene: what stands on the base, how that moves, and from which start."""
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, NamedTuple
+
+from cyclopts import Parameter
+
+from analytic.block import GRAVITY, RigidBlock
+from analytic.checks import LEAST, MOST
+from analytic.frame import RockingFrame
+from analytic.motion import Motion, SinePulse, Still
+from analytic.record import Record
+from analytic.simulate import strongest
+from analytic.slide import SlidingBlock
+from analytic.start import LEAST_TILT
+from engines.layouts import System
+from studies.cases.accelerograms import Baseline, Units, read_record
+from studies.cases.paper import PULSES
+from studies.cases.refusal import BadInputError
+from studies.kit.arguments import (
+    Count,
+    Finite,
+    HalfCycles,
+    Place,
+    Positive,
+    as_bad_input,
+    one_of,
+    refuse_both,
+    refuse_given,
+    required,
+)
+
+OF_A_PULSE = ("amplitude", "omega", "pulse", "half_cycles", "phase")
+OF_A_RECORD = ("units", "scale", "pga", "baseline")
+
+MOST_TIME, MOST_STEPS = 1e6, 1e9
+"""How long a block is watched at most, in units of 1/p, and in how many steps: 1e9 take the fastest
+solver minutes and an engine hours."""
+
+MOST_DEGREES = 90.0
+"""Tilt beyond which it was not meant in degrees either."""
+
+Pulse = Literal["half-sine", "full-sine"]
+
+
+class Posed(NamedTuple):
+    """A motion of the base, and theta [rad] and its rate [rad/s] at t = 0."""
+
+    motion: Motion
+    start: tuple[float, float]
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Excitation:
+    """What happens to a block: a pulse or a record, or a release on ground that does not move.
+
+    Attributes
+    ----------
+    amplitude
+        Amplitude of the ground acceleration [g of 9.81 m/s²], positive: the mirror image of a pulse
+        has the mirror image of its response.
+    omega
+        Circular frequency of the pulse [rad/s].
+    pulse
+        half-sine or full-sine; full-sine unless --half-cycles is given.
+    half_cycles
+        Number of half cycles, instead of --pulse.
+    phase
+        Phase [rad] of the pulse at its begin; 1.5708 makes it a cosine.
+    record
+        A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, or
+        a table of time [s] and acceleration. It is straight between its samples.
+    units
+        Of the record's acceleration: needed where the file does not state them, refused where it
+        states others. g is 9.81 m/s².
+    scale
+        Factor on the record's acceleration.
+    pga
+        Scale the record to this largest absolute acceleration [g].
+    baseline
+        Correct the record, before it is scaled, by what scipy.signal.detrend takes away: its mean
+        (constant) or the line that fits it best (linear). By default it is taken as it is, and what
+        velocity it leaves the base with is reported.
+    tilt
+        Rotation from which the block starts, in units of α; it stands on the corner that it leans
+        towards, to the right where positive. Without a pulse or record it is released on ground
+        that does not move.
+    rate
+        Angular velocity with which it starts, in units of αp; that of an upright block says about
+        which corner it turns.
+    degrees
+        Angles in degrees: --tilt, --rate [°/s] and --phase, and the rotations in a table.
+    """
+
+    amplitude: Positive | None = None
+    omega: Positive | None = None
+    pulse: Annotated[Pulse, one_of(Pulse)] | None = None
+    half_cycles: HalfCycles | None = None
+    phase: Finite | None = None
+    record: Place | None = None
+    units: Annotated[Units, one_of(Units)] | None = None
+    scale: Positive | None = None
+    pga: Positive | None = None
+    baseline: Annotated[Baseline, one_of(Baseline)] | None = None
+    tilt: Finite | None = None
+    rate: Finite | None = None
+    degrees: bool = False
+
+    def pose(self, block: System) -> Posed:
+        """Return the motion and the start that the options mean for a block.
+
+        Raises
+        ------
+        BadInputError
+            If they contradict one another, or a value is not allowed.
+        """
+        motion = self._motion()
+        return Posed(motion, self._start(block, motion))
+
+    def _given(self, names: Iterable[str]) -> dict[str, object]:
+        return {name: getattr(self, name) for name in names}
+
+    def _motion(self) -> Motion:
+        if self.record is not None:
+            refuse_given(self._given(OF_A_PULSE), "only without --record")
+            return self._recorded(self.record)
+        refuse_given(self._given(OF_A_RECORD), "only with --record")
+        pulse = any(value is not None for value in self._given(OF_A_PULSE).values())
+        released = (self.tilt or self.rate) and not pulse
+        return Still() if released else self._pulse()
+
+    def _recorded(self, path: Path) -> Record:
+        refuse_both(scale=self.scale, pga=self.pga)
+        record = read_record(path, self.units, self.baseline)
+        factor = "" if self.scale is None else f" times --scale {self.scale:g}"
+        peak = "" if self.pga is None else f" scaled to --pga {self.pga:g}"
+        with as_bad_input(f"--record{factor}{peak}: "):
+            if self.pga is not None:
+                return record.scaled_to(self.pga * GRAVITY)
+            return record.scaled(1.0 if self.scale is None else self.scale)
+
+    def _pulse(self) -> SinePulse:
+        refuse_both(half_cycles=self.half_cycles, pulse=self.pulse)
+        words = "a pulse requires both, or give --record, --tilt or --rate"
+        amplitude_g, omega = required(words, amplitude=self.amplitude, omega=self.omega)
+        with as_bad_input():
+            return SinePulse.in_g(
+                amplitude_g,
+                omega=omega,
+                half_cycles=self.half_cycles or PULSES[self.pulse or "full-sine"],
+                phase=self._angle(self.phase or 0.0, 1.0),
+            )
+
+    def _start(self, block: System, motion: Motion) -> tuple[float, float]:
+        theta = self._angle(self.tilt or 0.0, block.alpha)
+        rate = self._angle(self.rate or 0.0, block.alpha * block.p)
+        if not abs(theta) < 0.5 * math.pi:
+            tilt = self.tilt or 0.0
+            side = f"{90.0 if self.degrees else 0.5 * math.pi / block.alpha:.6g}"
+            unit = "°" if self.degrees else "α"
+            asked = not self.degrees and abs(tilt) < MOST_DEGREES
+            meant = f"; {tilt:g}°? --tilt {tilt:g} --degrees" if asked else ""
+            raise BadInputError(
+                f"--tilt is {tilt:g}; it must lie between -{side} and {side} {unit}, "
+                f"where the side of the block lies on the ground{meant}"
+            )
+        starts = (
+            ("tilt", self.tilt, theta, LEAST_TILT * block.alpha),
+            ("rate", self.rate, rate, LEAST),
+        )
+        for name, given, value, least in starts:
+            if given and not least <= abs(value) <= MOST:
+                allowed = f"0, or of a size {least:.3g} to {MOST:g} in rad and s"
+                raise BadInputError(f"--{name} is {given:g}; it must be {allowed}")
+        if abs(theta) == block.alpha and rate == 0.0 == strongest(motion):
+            raise BadInputError(
+                f"--tilt is {self.tilt:g} and nothing moves; it must not be where a block at rest "
+                "balances"
+            )
+        return theta, rate
+
+    def _angle(self, value: float, unit: float) -> float:
+        return math.radians(value) if self.degrees else value * unit
+
+
+MOST_M = 200.0
+"""Size [m] up to which a block may be one; 300 are a narrow cabinet in millimetres."""
+
+LEAST_COLUMNS = 2
+"""Of a frame."""
+
+OF_A_FRAME = ("columns", "load")
+
+Width = Annotated[Positive, Parameter(help="Full width B of the block or of each column [m].")]
+Height = Annotated[Positive, Parameter(help="Full height H of the block or of each column [m].")]
+
+SceneName = Literal["block", "frame", "slide"]
+
+
+def block_of(width: float, height: float) -> RigidBlock:
+    """Return the block of --width and --height [m], or refuse one that was meant in millimetres."""
+    for name, size in (("width", width), ("height", height)):
+        if size > MOST_M:
+            meant = f"{size:g} m? In metres: --{name} {1e-3 * size:g} for {size:g} mm"
+            raise BadInputError(f"--{name} is {size:g}; it must be at most {MOST_M:g} m; {meant}")
+    with as_bad_input():
+        return RigidBlock(width=width, height=height)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Standing:
+    """What stands on the base.
+
+    Attributes
+    ----------
+    scene
+        block: one block that rocks. frame: a beam on columns that rock, of --width and --height
+        each, with --load. slide: one block that slides, by a --friction below B/H.
+    columns
+        Of a frame, from 2 to 100.
+    load
+        Of a frame: the mass of its beam over that of all columns.
+    """
+
+    scene: Annotated[SceneName, one_of(SceneName)] = "block"
+    columns: Count | None = None
+    load: Positive | None = None
+
+    def system(self, width: float, height: float, friction: float | None) -> System:
+        """Return the system that the options mean.
+
+        Parameters
+        ----------
+        width, height : float
+            Full sizes of the block or of each column [m].
+        friction : float or None
+            Coefficient between base and a block that slides; other systems have none.
+        """
+        if self.scene != "frame":
+            own = {name: getattr(self, name) for name in OF_A_FRAME}
+            refuse_given(own, "only with --scene frame")
+        block = block_of(width, height)
+        sizes = {"width": width, "height": height}
+        with as_bad_input():
+            if self.scene == "frame":
+                words = "a frame requires the mass of its beam, over that of all columns"
+                (load,) = required(words, load=self.load)
+                return RockingFrame(**sizes, columns=self.columns or LEAST_COLUMNS, load=load)
+            if self.scene == "slide":
+                words = "a block that slides requires one below B/H"
+                (friction,) = required(words, friction=friction)
+                return SlidingBlock(**sizes, friction=friction)
+        return block
+
+    def pose(self, system: System, excitation: Excitation) -> Posed:
+        """Return the motion and the start that options mean; what slides starts at rest."""
+        if self.scene == "slide":
+            refuse_given(
+                {"tilt": excitation.tilt, "rate": excitation.rate}, "only where something rocks"
+            )
+        return excitation.pose(system)
+
+
+def refuse_endless(
+    block: System,
+    watched_s: float,
+    *,
+    duration: float | None = None,
+    step: float | None = None,
+    dt: float | None = None,
+) -> None:
+    """Refuse what no computer sees the end of: a time [s], and steps p dt or [s] that were given."""
+    most_s = MOST_TIME / block.p
+    if watched_s > most_s:
+        asked = (
+            f"--width is {block.width:g} and --height {block.height:g}; what moves the block"
+            if duration is None
+            else f"--duration is {duration:g}; it"
+        )
+        raise BadInputError(
+            f"{asked} must last at most {most_s:.4g} s, {MOST_TIME:g} times 1/p, "
+            f"and the block is watched for {watched_s:.4g} s"
+        )
+    for name, given, unit in (("step", step, 1.0 / block.p), ("dt", dt, 1.0)):
+        if given is not None and watched_s > MOST_STEPS * given * unit:
+            least = watched_s / (MOST_STEPS * unit)
+            raise BadInputError(
+                f"--{name} is {given:g}; it must be at least {least:.4g} for a run of "
+                f"{watched_s:.4g} s, so that this takes at most {MOST_STEPS:g} steps"
+            )
+
+
+SMALL_M, LARGE_M = 0.005, 20.0
+"""Sizes [m] beyond which a block is unusual."""
+STRONG_G = 2.0
+"""Amplitude of a pulse [g] from which it is unusual."""
+STRONG_RECORD_G = 3.0
+"""The same of a record; the strongest ever recorded had some 3 to 4 g."""
+SLOW_RAD_S = 1.0
+"""Frequency of a pulse [rad/s] below which it is unusual: its period is more than 6 s."""
+
+
+def unusual(width: float, height: float, given: Excitation, motion: Motion) -> Iterator[str]:
+    """Yield a note for each value that is unusual, with what it would be in another unit."""
+    for name, size in (("width", width), ("height", height)):
+        if size > LARGE_M:
+            less = 1e-3 * size
+            yield f"--{name} is {size:g} m, large for a block; --{name} {less:g} for as many mm"
+        if size < SMALL_M:
+            yield f"--{name} is {size:g} m, small for a block"
+    if given.amplitude is not None and given.amplitude > STRONG_G:
+        less = given.amplitude / GRAVITY
+        yield (
+            f"--amplitude is {given.amplitude:g} g, strong for a pulse; "
+            f"--amplitude {less:.4g} for as many m/s²"
+        )
+    if given.omega is not None and given.omega < SLOW_RAD_S:
+        more = 2.0 * math.pi * given.omega
+        yield f"--omega is {given.omega:g} rad/s, slow for a pulse; {more:.4g} for as many Hz"
+    if given.tilt is not None and abs(given.tilt) > 1.0 and not given.degrees:
+        yield f"--tilt is {given.tilt:g} α, from where a block falls; --degrees for an angle"
+    if isinstance(motion, Record) and motion.peak > STRONG_RECORD_G * GRAVITY:
+        yield (
+            f"--record has {motion.peak / GRAVITY:.3g} g at most, strong for a record; "
+            "its header, or --units, says in which unit it is"
+        )

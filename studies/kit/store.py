@@ -1,0 +1,453 @@
+"""A results folder: finished rows in SQLite, tables as CSV, and what made them as JSON.
+
+A row is found again by the key of its job, and kept as long as what made it is the same.
+"""
+
+import json
+import math
+import os
+import platform
+import sqlite3
+import subprocess
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from datetime import UTC, datetime
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+from typing import Any, Self
+
+import pandas as pd
+
+from engines import ENGINES
+from studies.cases.refusal import BadInputError
+from studies.kit.identity import (
+    COMPUTING,
+    NOT_INSTALLED,
+    ROOT,
+    Maker,
+    changed,
+    version_of,
+    why,
+)
+from studies.kit.jobs import Job, Row
+from studies.kit.say import say
+from studies.kit.tables import (
+    PACKED,
+    digest,
+    read_table,
+    tables_of,
+    with_head,
+    write_table,
+    write_text,
+)
+
+ROWS, PROVENANCE = "rows.sqlite", "provenance.json"
+
+
+class FolderError(BadInputError):
+    """A results folder that cannot be used; the message is one line that says why."""
+
+    def __init__(self, folder: Path, problem: str, option: str = "--out") -> None:
+        super().__init__(f"{option} is {str(folder)!r}; {problem}")
+        self.folder, self.problem = folder, problem
+
+
+class Store:
+    """The rows of a folder, which one run at a time may write to.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if there is none.
+    study : str
+        Name of the study whose rows it holds; another study's folder is refused.
+    table : str, optional
+        Name of a table that holds the rows as they are: a folder without a store is filled from it.
+
+    Raises
+    ------
+    FolderError
+        If the folder cannot be written, is in use, or holds something else.
+    """
+
+    def __init__(self, folder: Path, study: str, table: str = "") -> None:
+        self.folder, self.study, self.table = folder, study, table
+        self._began, self._added = time.perf_counter(), 0
+        self._taken: list[Row] = []
+        self._makers: set[str] = set()
+        fresh = not (folder / ROWS).exists()
+        if fresh and folder.is_dir() and not _may_be_filled(folder, study, table):
+            raise FolderError(folder, f"it must be new or empty, or hold the {ROWS} of this study")
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._base = sqlite3.connect(folder / ROWS, timeout=0.2, isolation_level=None)
+            # a row that is written survives kill -9; the lock ends with the process
+            for line in ("locking_mode=EXCLUSIVE", "journal_mode=WAL", "synchronous=NORMAL"):
+                self._base.execute(f"PRAGMA {line}")
+            self._base.execute("CREATE TABLE IF NOT EXISTS rows (key PRIMARY KEY, made, row)")
+            self._base.execute("CREATE TABLE IF NOT EXISTS makers (made PRIMARY KEY, maker)")
+            self._base.execute("CREATE TABLE IF NOT EXISTS study (name PRIMARY KEY)")
+            self._base.execute("BEGIN IMMEDIATE")
+            known = [name for (name,) in self._base.execute("SELECT name FROM study")] or [study]
+            self._base.execute("INSERT OR IGNORE INTO study VALUES (?)", known)
+            self._base.execute("COMMIT")
+        except OSError as error:
+            words = f"it must be a folder that can be written ({error.strerror or error})"
+            raise FolderError(folder, words) from error
+        except sqlite3.Error as error:
+            busy = "locked" in str(error)
+            words = "it must not be in use by another run" if busy else f"its {ROWS}: {error}"
+            raise FolderError(folder, words) from error
+        if known != [study]:
+            raise FolderError(folder, f"it holds results of {known[0]}; {study} needs another one")
+        self.filled = fresh and (folder / PROVENANCE).is_file()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with suppress(sqlite3.Error):
+            self._base.execute("PRAGMA journal_mode=DELETE")  # one file, which can be copied
+        self._base.close()
+
+    def kept(self, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> dict[str, Row]:
+        """Return the rows that would be made so now; failed ones are tried again.
+
+        Parameters
+        ----------
+        jobs : mapping
+            Key -> job.
+        makers : mapping
+            Source -> what makes its rows now.
+
+        Raises
+        ------
+        FolderError
+            If the folder also holds rows of what is not asked for: no table loses them unseen.
+        """
+        if self.filled:
+            self._fill(jobs, makers)
+        rows = self._rows()
+        for key, (_, row) in rows.items():
+            if key not in jobs:
+                words = _unasked(
+                    row, [{**job.labels, "source": job.source} for job in jobs.values()]
+                )
+                raise FolderError(self.folder, f"it also holds results of {words}")
+        found, stale = _sorted(rows, jobs, makers)
+        if stale:
+            say(f"{len(found)} of {len(jobs)} rows are kept; computed again: {why(stale)}")
+        return {key: row for key, row in found.items() if row["outcome"] != "failed"}
+
+    def _rows(self) -> dict[str, tuple[Maker, Row]]:
+        try:
+            return _read(self._base)
+        except (sqlite3.Error, ValueError, KeyError) as error:
+            raise FolderError(self.folder, f"its {ROWS} is damaged ({error})") from error
+
+    def _fill(self, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> None:
+        """Take the rows of a folder's table, which its provenance says what made."""
+        made = provenance_of(self.folder).get("made", {})
+        places = [self.folder / f"{self.table}.csv{end}" for end in ("", PACKED)]
+        rows = read_table(next(path for path in places if path.is_file())).to_dict("records")
+        keys = {_name_of({**job.labels, "source": job.source}): key for key, job in jobs.items()}
+        labels = [*next(iter(jobs.values())).labels, "source"] if jobs else []
+        for row in rows:
+            name = _name_of({label: row.get(label) for label in labels})
+            if name not in keys:
+                raise FolderError(self.folder, f"it also holds results of {_said(row, labels)}")
+            if row["source"] in made:
+                self.add(keys[name], row, made[row["source"]])
+        self._added, self.filled = 0, False
+
+    def add(self, key: str, row: Row, maker: Maker) -> None:
+        """Store a row, at once and in one piece.
+
+        Raises
+        ------
+        FolderError
+            If it cannot be written.
+        """
+        made = json.dumps(maker, sort_keys=True)
+        try:
+            if made not in self._makers:
+                self._makers.add(made)
+                self._base.execute("INSERT OR IGNORE INTO makers VALUES (?, ?)", (made, made))
+            text = json.dumps(row, default=_number)
+            self._base.execute("REPLACE INTO rows VALUES (?, ?, ?)", (key, made, text))
+        except sqlite3.Error as error:
+            raise FolderError(self.folder, f"its {ROWS} cannot be written ({error})") from error
+        self._added += 1
+
+    def take(self, other: Path, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> None:
+        """Copy from another folder the rows of some jobs that would be made so here.
+
+        A failure is taken only where its engine is not installed; else it is tried again.
+
+        Raises
+        ------
+        FolderError
+            If it is no results folder, or holds no row of these jobs that would be made so here.
+        """
+        if not (other / ROWS).is_file():
+            words = f"it must be a results folder, with its {ROWS} and {PROVENANCE}"
+            raise FolderError(other, words, "--also")
+        try:
+            base = sqlite3.connect(f"file:{other / ROWS}?mode=ro", uri=True, timeout=0.2)
+            rows = _read(base)
+            base.close()
+        except (sqlite3.Error, ValueError, KeyError) as error:
+            raise FolderError(other, f"its {ROWS} cannot be read ({error})", "--also") from error
+        found, stale = _sorted(rows, jobs, makers)
+        mine = self._rows()
+        taken = {
+            key: row
+            for key, row in found.items()
+            if (key not in mine or changed(mine[key][0], makers[row["source"]]))
+            and (row["outcome"] != "failed" or not _installed(jobs[key]))
+        }
+        if not found:
+            words = f"all its rows are stale ({why(stale)})"
+            raise FolderError(
+                other, words if stale else "it holds no row of what is asked for", "--also"
+            )
+        before = self._added
+        for key, row in taken.items():
+            self.add(key, row, rows[key][0])
+        self._added = before
+        if stale:
+            say(f"not taken from {str(other)!r}: {why(stale)}")
+        record = provenance_of(other)
+        engines = [jobs[key] for key in taken if jobs[key].asked.engine]
+        names = {name for job in engines for name in job.asked.declared.packages}
+        made = {name: rows[key][0].get(name) for key in taken for name in names & {*rows[key][0]}}
+        said = {name: record.get(name) for name in ("git", "machine")}
+        self._taken.append({**said, "engines": made, "rows": len(taken)})
+
+    def finish(
+        self,
+        tables: Mapping[str, pd.DataFrame],
+        makers: Mapping[str, Maker],
+        rows: int,
+        **asked: Any,
+    ) -> None:
+        """Write tables, and what a reader must know of how they were made.
+
+        Parameters
+        ----------
+        tables : mapping
+            Name of a file, without .csv -> table.
+        makers : mapping
+            Source -> what made its rows.
+        rows : int
+            How many rows there are.
+        **asked
+            Options of the command.
+        """
+        for name, table in tables.items():
+            write_table(self.folder / f"{name}.csv", with_head(table, self.study, name))
+        before = provenance_of(self.folder)
+        run = {
+            "start": datetime.now(UTC).isoformat(timespec="seconds"),
+            "git": commit(),
+            **asked,
+            "duration_s": round(time.perf_counter() - self._began, 3),
+            **{"rows": rows, "computed": self._added},
+            **({"also": self._taken} if self._taken else {}),
+        }
+        record = {"study": self.study, **versions(before), "git": commit(), "machine": machine()}
+        write_record(
+            self.folder,
+            {**record, "made": makers, "runs": [*before.get("runs", ()), run]},
+        )
+
+
+def _read(base: sqlite3.Connection) -> dict[str, tuple[Maker, Row]]:
+    then = {name: json.loads(of) for name, of in base.execute("SELECT made, maker FROM makers")}
+    rows = base.execute("SELECT key, made, row FROM rows")
+    return {key: (then[made], json.loads(text)) for key, made, text in rows}
+
+
+def _may_be_filled(folder: Path, study: str, table: str) -> bool:
+    """Return whether a folder without a store is empty, or holds a table to fill one from."""
+    if not any(each for each in folder.iterdir() if not each.name.startswith(".")):
+        return True
+    if not table or not any((folder / f"{table}.csv{end}").is_file() for end in ("", PACKED)):
+        return False
+    return provenance_of(folder).get("study") == study
+
+
+def _name_of(labels: Mapping[str, Any]) -> str:
+    return json.dumps(labels, default=_number)
+
+
+def _number(value: Any) -> Any:
+    if hasattr(value, "item"):
+        return value.item()
+    raise TypeError(f"{value!r} cannot stand in a row")
+
+
+def _said(row: Row, labels: Iterable[str]) -> str:
+    return ", ".join(f"{name} {row[name]}" for name in labels if name in row)
+
+
+def _unasked(row: Row, asked: Sequence[Row]) -> str:
+    """Say what of a row is not asked for: its first label of another value, or its settings."""
+    labels = list(asked[0]) if asked else ["source"]
+    for name in labels:
+        if row.get(name) not in [each.get(name) for each in asked]:
+            return f"{name} {row.get(name)}, which must be named too; or use a new folder"
+    return f"other settings ({_said(row, labels)}); use a new folder"
+
+
+def _sorted(
+    rows: Mapping[str, tuple[Maker, Row]], jobs: Mapping[str, Job], makers: Mapping[str, Maker]
+) -> tuple[dict[str, Row], list[tuple[str, Maker, Maker]]]:
+    """Return the rows of jobs that would be made so now, and of the others why not."""
+    found, stale = {}, []
+    for key, (then, row) in rows.items():
+        if key in jobs:
+            now = makers[jobs[key].source]
+            if changed(then, now):
+                stale.append((jobs[key].source, then, now))
+            else:
+                found[key] = row
+    return found, stale
+
+
+def _installed(job: Job) -> bool:
+    return not job.asked.engine or job.asked.declared.installed
+
+
+@cache
+def project_version() -> str:
+    """Return the version of this project, whether it is installed or run from its source."""
+    source = ROOT / "pyproject.toml"
+    if source.is_file():
+        import tomllib
+
+        return str(tomllib.loads(source.read_text(encoding="utf-8"))["project"]["version"])
+    with suppress(metadata.PackageNotFoundError):
+        return metadata.version("rocking")
+    return NOT_INSTALLED
+
+
+def versions(before: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the versions of project, Python, engines and packages.
+
+    An engine that is no longer installed has the version that `before`, a provenance, names.
+    """
+    engines = {name: version_of(name) for one in ENGINES.values() for name in one.packages}
+    for name, version in before.get("engines", {}).items():
+        if engines.get(name) == NOT_INSTALLED:
+            engines[name] = version
+    return {
+        "version": project_version(),
+        "python": platform.python_version(),
+        "engines": engines,
+        "packages": {name: version_of(name) for name in (*COMPUTING, "pandas", "matplotlib")},
+    }
+
+
+@cache
+def commit() -> dict[str, Any] | None:
+    """Return the commit of the source and whether it was edited since; None without git."""
+    if not (ROOT / ".git").exists():
+        return None
+    with suppress(OSError, subprocess.SubprocessError):
+        hash_, edited = (
+            subprocess.run(
+                ["git", "-C", str(ROOT), *words.split()],
+                capture_output=True, text=True, timeout=10, check=True,
+            ).stdout.strip()
+            for words in ("rev-parse HEAD", "status --porcelain -uno")
+        )  # fmt: skip
+        return {"commit": hash_, "edited": bool(edited)}
+    return None
+
+
+def machine() -> dict[str, Any]:
+    """Return the processor, the number of cores and the operating system."""
+    cpu = platform.processor() or platform.machine()
+    with suppress(OSError):
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                cpu = line.partition(":")[2].strip()
+    return {"cpu": cpu, "cores": usable_cores(), "os": platform.platform()}
+
+
+def usable_cores() -> int:
+    """Return the number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def provenance_of(folder: Path) -> dict[str, Any]:
+    """Return what a folder's provenance says; nothing where there is none."""
+    path = folder / PROVENANCE
+    if not path.is_file():
+        return {}
+    with suppress(ValueError, RecursionError):
+        record = json.loads(path.read_text(encoding="utf-8"))
+        if isinstance(record, dict):
+            return record
+    raise FolderError(folder, f"its {PROVENANCE} cannot be read")
+
+
+def write_record(folder: Path, record: Mapping[str, Any]) -> None:
+    """Write a provenance with the digest of each table that lies beside it."""
+    kept = {path.name.removesuffix(PACKED): digest(path) for path in tables_of(folder)}
+    write_text(folder / PROVENANCE, json.dumps({**record, "tables": kept}, indent=2) + "\n")
+
+
+def engines_of(record: Mapping[str, Any]) -> dict[str, str]:
+    """Return the versions of a record's engines, also of those that answered elsewhere."""
+    known = dict(record["engines"])
+    for run in record["runs"]:
+        for taken in run.get("also", ()):
+            known |= taken["engines"]
+    return known
+
+
+def whole_runs(record: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the runs of a record that computed all rows, and went on until the end."""
+    return [run for run in record["runs"] if run.get("computed") == run.get("rows", math.nan)]
+
+
+def check(folder: Path, names: Iterable[str], option: str) -> None:
+    """Refuse tables that are not what a study wrote; those that are not there are passed over.
+
+    Parameters
+    ----------
+    folder : Path
+    names : iterable of str
+        Tables, each perhaps in a folder inside, beside its provenance.
+    option : str
+        Name of the option that names the folder.
+
+    Raises
+    ------
+    FolderError
+        If a table was edited or cut, or no provenance tells of it.
+    """
+    for name in names:
+        for path in (folder / name, folder / f"{name}{PACKED}"):
+            if os.path.lexists(path) and (problem := _problem(path)):
+                raise FolderError(folder, f"its {path.relative_to(folder)} {problem}", option)
+
+
+def _problem(path: Path) -> str:
+    if not path.is_file():
+        return "must be a file"
+    known = provenance_of(path.parent).get("tables", {}).get(path.name.removesuffix(PACKED))
+    if known is None:
+        words = f"must be beside the {PROVENANCE} that has its digest"
+        return f"{words}; the command that made it writes one when it is run again"
+    try:
+        same = digest(path) == known
+    except (EOFError, OSError):
+        same = False
+    return "" if same else f"is not what its {PROVENANCE} tells of: edited, cut or of another run"
