@@ -1,44 +1,43 @@
-"""One full run of every study, as this project keeps it: where, and what its columns mean.
+"""One full run of every study, as this project keeps it.
 
-A line of columns.csv is for the columns of that name in all tables, or in the one that it names.
+Where it is, what its columns mean, and what its tables know of every setting of the engines.
 """
 
 from __future__ import annotations
 
-import functools
+import math
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from analytic import simulate
+from engines import ENGINES
+from engines.declaration import Preset
 from studies.cases.paper import SWEEPS, sweep_cases
-from studies.kit.arguments import BadInputError
-from studies.kit.provenance import check
+from studies.cases.refusal import BadInputError
+from studies.kit.store import check
+from studies.measures.differences import WELL_CONDITIONED
+from studies.measures.finer import joint
+from studies.measures.presets import uses_of
+from studies.sources.registry import resolve
 
 PUBLISHED = Path(__file__).parents[1] / "published"
 """The folder of the published tables, one folder inside for each chapter."""
+COLUMNS = Path(__file__).with_name("columns.csv")
+"""What each column means: in all tables, or in the one that its line names."""
+ABOUT = ("type", "unit", "meaning")
+"""What COLUMNS says: text, boolean, integer (a count) or number; its unit, "-" without one."""
 
 
 def published_in(folder: Path | None, names: Sequence[str]) -> Path:
-    """Return the folder of published tables that --published gives.
+    """Return the folder that --published names, or PUBLISHED; refuse one without some tables.
 
-    Parameters
-    ----------
-    folder : Path or None
-        What was given; None for PUBLISHED.
-    names : sequence of str
-        Tables that it must hold, as chapter/file.csv.
-
-    Raises
-    ------
-    BadInputError
-        If it lacks one of these tables.
-    FolderError
-        If one was edited.
+    The tables are named as chapter/file.csv; one that was edited is refused, too.
     """
     found = folder or PUBLISHED
     if missing := [name for name in names if not (found / name).is_file()]:
@@ -47,7 +46,7 @@ def published_in(folder: Path | None, names: Sequence[str]) -> Path:
     return found
 
 
-@functools.cache
+@cache
 def needed() -> NDArray[np.float64]:
     """Return the friction that the exact solution needs in each of the paper's cases."""
     return np.array([simulate(c.block, c.motion).friction_needed for c in sweep_cases(SWEEPS)])
@@ -55,9 +54,7 @@ def needed() -> NDArray[np.float64]:
 
 def too_slippery(friction: float | None) -> str:
     """Say in how many of the paper's cases the exact solution needs more friction, or nothing."""
-    if friction is None:
-        return ""
-    short = int((needed() > friction).sum())
+    short = 0 if friction is None else int((needed() > friction).sum())
     if not short:
         return ""
     return (
@@ -67,42 +64,18 @@ def too_slippery(friction: float | None) -> str:
     )
 
 
-TOLD = ("type", "unit", "meaning")
-"""What is told of a column: text, boolean, integer (what counts) or number; its unit; its meaning.
-
-The unit of a number without one is "-".
-"""
-
-
 @cache
 def columns() -> dict[tuple[str, str], tuple[str, ...]]:
-    """Return what is told of a column, by table (empty: any) and name."""
-    lines = pd.read_csv(Path(__file__).with_name("columns.csv"), keep_default_na=False)
+    """Return what COLUMNS says of a column, by table (empty: any) and name."""
+    lines = pd.read_csv(COLUMNS, keep_default_na=False)
     return {
-        (str(table), str(name)): tuple(map(str, told))
-        for table, name, *told in lines.itertuples(index=False, name=None)
+        (str(table), str(name)): tuple(map(str, about))
+        for table, name, *about in lines.itertuples(index=False, name=None)
     }
 
 
 def column_of(table: str, name: str) -> tuple[str, ...]:
-    """Return what columns.csv tells of a column.
-
-    Parameters
-    ----------
-    table : str
-        Study and file, as "stability/steps"; empty for what holds in every table.
-    name : str
-
-    Returns
-    -------
-    tuple of str
-        Type, unit and meaning, in the order of TOLD.
-
-    Raises
-    ------
-    KeyError
-        If nothing is told of it.
-    """
+    """Return type, unit and meaning of a column of a table, as "stability/steps"; or KeyError."""
     known = columns()
     return known.get((table, name)) or known["", name]
 
@@ -115,4 +88,110 @@ def dictionary(published: Path) -> pd.DataFrame:
         for table in [f"{path.parent.name}/{path.name.partition('.')[0]}"]
         for name in pd.read_csv(path, nrows=0)
     ]
-    return pd.DataFrame(lines, columns=["table", "column", *TOLD])
+    return pd.DataFrame(lines, columns=["table", "column", *ABOUT])
+
+
+LADDER = "precision/work-precision.csv"
+"""Errors and times of methods along their steps."""
+PAPER = ("sweep/summary.csv", "presets/summary.csv")
+"""The paper's cases, with each preset as it is declared."""
+RANDOM = "steps/random.csv"
+"""Random cases at the settings that keep an error on the other published cases."""
+TARGETS = (0.1, 1e-2, 1e-3, 1e-4)
+"""Errors that somebody may want to keep."""
+SETTING = ["engine", "preset", "value"]
+"""Columns that tell one setting from another; value is p dt, or an engine's own accuracy."""
+COUNTS = ["random_cases", "random_off", "random_calm_off"]
+"""Columns of `counted`."""
+
+
+def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
+    """Return a line for each published setting of some engines, from coarse to fine in a preset.
+
+    Columns: SETTING, whose value is nan where the library has its step in seconds; wall_s, the mean
+    time of a case [s]; runs, how often each was timed at least; cases; max_error, the largest of
+    the peak, inf where an outcome is wrong or a case failed.
+    """
+    found = pd.concat([along_steps(published, engines), _of_paper(published, engines)])
+    # where both tables know a setting, the ladder's time is the best of several
+    first = dict.fromkeys(("wall_s", "runs"), "first")
+    lines = found.groupby(SETTING, sort=False, dropna=False, as_index=False).agg(
+        {**first, "cases": "sum", "max_error": "max"}
+    )
+    uses = [ENGINES[name].preset(preset) for name, preset in lines[SETTING[:2]].to_numpy()]
+    steps = lines["value"].fillna(pd.Series(map(_declared_step, uses)))
+    preset = lines.groupby(SETTING[:2], sort=False).ngroup()
+    return lines.iloc[np.lexsort((-steps, preset))].reset_index(drop=True)
+
+
+def along_steps(published: Path, engines: Sequence[str]) -> pd.DataFrame:
+    """Return the settings of the ladder: every preset along its steps, both sets of cases."""
+    uses = pd.DataFrame(
+        [(f"{name} {use.name}", name, use.name) for name in engines for use in uses_of(name)],
+        columns=["method", *SETTING[:2]],
+    )
+    lines = joint(pd.read_csv(published / LADDER)).merge(uses, on="method")
+    worst = lines["max_error"].where(lines["failed"] == 0, math.inf)
+    return lines.assign(max_error=worst)[[*SETTING, "wall_s", "runs", "cases", "max_error"]]
+
+
+def _of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
+    """Return each preset, as it is declared, on the paper's cases."""
+    lines = pd.concat([pd.read_csv(published / name) for name in PAPER], ignore_index=True)
+    lines = lines[lines["figure"].astype(str) == "all"].drop_duplicates("source")
+    lines = lines[[resolve(source).engine in engines for source in lines["source"]]]
+    asked = [resolve(source) for source in lines["source"]]
+    return pd.DataFrame(
+        {
+            "engine": [source.engine for source in asked],
+            "preset": [source.preset for source in asked],
+            "value": [declared_value(source.used) for source in asked],
+            "wall_s": lines["wall_s"] / lines["cases"],
+            "runs": 1,
+            "cases": lines["cases"],
+            "max_error": lines["max_error"].where(lines["agree"] == lines["cases"], math.inf),
+        }
+    )
+
+
+def options_at(preset: Preset, value: float) -> dict[str, Any]:
+    """Return the options of a scene that set a preset to a value; none for its own step, nan."""
+    if math.isnan(value):
+        return {}
+    knob = preset.accuracy_knob
+    return {"settings": {knob[0]: value}} if knob else {"step": value}
+
+
+def declared_value(preset: Preset) -> float:
+    """Return p dt, or the accuracy knob, as a preset is declared; nan for a step in seconds."""
+    if preset.accuracy_knob is not None:
+        return float(getattr(preset.settings, preset.accuracy_knob[0]))
+    return preset.ordinary_step()
+
+
+def _declared_step(preset: Preset) -> float:
+    """Return what `declared_value` does; of a step in seconds, the largest p dt in the paper."""
+    if math.isnan(preset.step_s):
+        return declared_value(preset)
+    return preset.step_s * max(case.block.p for case in sweep_cases((6,)))
+
+
+def random_runs(published: Path) -> pd.DataFrame:
+    """Return the published random cases at each setting; none where they were not run."""
+    path = published / RANDOM
+    columns = [*SETTING, "case", "condition", "error"]
+    found = pd.read_csv(path) if path.is_file() else pd.DataFrame(columns=columns)
+    return found.astype({"value": float})
+
+
+def counted(known: pd.DataFrame, runs: pd.DataFrame, target: float) -> pd.DataFrame:
+    """Return settings with COUNTS of their random cases: all, off, off though well conditioned.
+
+    A case is off if its error is larger than the target.
+    """
+    off = runs["error"] > target
+    calm = runs["condition"] < WELL_CONDITIONED
+    marked = runs[SETTING].assign(random_cases=1, random_off=off, random_calm_off=off & calm)
+    found = marked.groupby(SETTING, dropna=False)[COUNTS].sum().reset_index()
+    merged = known.astype({"value": float}).merge(found, on=SETTING, how="left")
+    return merged.assign(**{name: merged[name].fillna(0).astype(int) for name in COUNTS})
