@@ -9,7 +9,6 @@ import time
 from pathlib import Path
 
 from studies.__main__ import run
-from studies.catalogue import STUDIES
 
 ROOT = Path(__file__).parents[1]
 PUBLISHED_PAGES = ("README.md", "engines.md", "scenes.md")
@@ -36,6 +35,7 @@ def refused(capsys, arguments, *parts):
 
 def redrawn(name, folder):
     """Draw a study's pictures from the tables of its folder alone; return the files."""
+    from studies.catalogue import STUDIES
     from studies.drawing.figures import save_all
 
     (study,) = (study for study in STUDIES if study.name == name)
