@@ -98,7 +98,7 @@ def _error_panel(axes: Axes, panel: pd.DataFrame) -> None:
         # the smallest of a stretch would be the zeros between two swings
         worst = off.rolling(max(len(off) // 60, 1), center=True, min_periods=1).max()
         axes.plot(worst.index, worst.clip(lower=LOWEST), line_of(source), color=style.colour)
-    axes.set(yscale="log", ylabel="off from exact\nby  [θcr]", xlim=(0.0, found.index.max()))
+    axes.set(yscale="log", ylabel="distance from\nexact  [θcr]", xlim=(0.0, found.index.max()))
     axes.grid(alpha=0.25)
 
 

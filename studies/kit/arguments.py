@@ -90,12 +90,14 @@ def figures(*known: int) -> Parameter:
             if token.value not in map(str, known):
                 words = ", ".join(map(str, known))
                 raise BadInputError(f"{token.keyword} is {token.value!r}; it must be among {words}")
-        values = tuple(int(token.value) for token in tokens)
-        refuse_repeats("--figure", values)
-        return values
+        return tuple(int(token.value) for token in tokens)
 
     return Parameter(
-        converter=convert, consume_multiple=True, metavar="INT...", show_default=_spaced
+        converter=convert,
+        validator=lambda _, values: refuse_repeats("--figure", values),
+        consume_multiple=True,
+        metavar="INT...",
+        show_default=_spaced,
     )
 
 
@@ -153,8 +155,8 @@ def sources_option(
         validator=_check_sources,
         help=(
             f"{first}{' '.join(names)}; an engine takes a preset after a colon: "
-            f"{' '.join(all_presets())}; {words} stand for the engines of the published studies and "
-            "for all that are installed."
+            f"{' '.join(all_presets())}; {words} stand for the engines of the published studies "
+            "and for all that are installed."
         ),
     )
 

@@ -2,39 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
 
-from analytic.block import RigidBlock
 from analytic.motion import Motion
 from analytic.response import Response
+from engines.layouts import System
 
 
 def samples(
-    response: Response, block: RigidBlock, motion: Motion, labels: dict[str, Any]
+    response: Response, system: System, motion: Motion, labels: Mapping[str, Any]
 ) -> pd.DataFrame:
     """Return the history of a response as a tidy table, with the ground acceleration.
 
-    Parameters
-    ----------
-    response : Response
-        With a history.
-    block, motion
-        Whose response it is.
-    labels : dict
-        The first columns, the same in every row.
-
-    Returns
-    -------
-    DataFrame
-        A row for each sample: the labels, outcome, time_s [s], ground_g [g], theta_ratio
-        (theta/alpha) and velocity_rad_s [rad/s].
-
-    Raises
-    ------
-    ValueError
-        If no history was asked for, or the response failed before it had one.
+    A row for each sample: the labels, outcome, time_s [s], ground_g [g], theta_ratio (theta/alpha)
+    and velocity_rad_s [rad/s]; ValueError if the response has no history.
     """
     history = response.history
     if history is None:
@@ -44,8 +28,8 @@ def samples(
             **labels,
             "outcome": response.outcome.value,
             "time_s": history.time,
-            "ground_g": motion.acceleration(history.time) / block.gravity,
-            "theta_ratio": history.theta / block.alpha,
+            "ground_g": motion.acceleration(history.time) / system.gravity,
+            "theta_ratio": history.theta / system.alpha,
             "velocity_rad_s": history.velocity,
         }
     )

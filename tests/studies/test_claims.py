@@ -3,7 +3,6 @@
 import math
 from itertools import islice
 
-import numpy as np
 import pandas as pd
 import pytest
 
@@ -12,8 +11,6 @@ from studies.cases.drawn import LEAST_NORMAL, everything
 from studies.cases.window import Window
 from studies.contact import study as contact
 from studies.contact.study import recommendation
-from studies.histories.study import CLAIMS
-from studies.measures.claims import Finding, claim, read_findings, tally, write_findings
 from studies.overturning import report as overturning
 from studies.overturning.report import with_verdicts
 from studies.precision import report as precision
@@ -262,31 +259,3 @@ def test_the_reference_never_ends_only_where_no_pivot_lifts():
     )
     text = validity.finding(table)
     assert "from 1.5 onsets at H/B 1" in text and "never at H/B 3" in text
-
-
-def test_a_claim_needs_its_sources_and_is_told_whichever_way_it_falls(tmp_path):
-    table = pd.DataFrame({"source": ["exact"], "value": [2.0]})
-    less = claim("two is less than one", "exact")(lambda t: (bool((t["value"] < 1).all()), "2"))
-    lost = claim("nobody asked", "rk4")(lambda t: (True, ""))
-    found = [less(table), lost(table), Finding("it is so", True, "1")]
-    assert [item.holds for item in found] == [False, None, True]
-    assert tally(found, "them") == "Of them 1 of 2 hold; not: two is less than one."
-    assert [item.verdict for item in found] == ["does not hold", "not tested", "holds"]
-    write_findings(tmp_path, found)
-    assert read_findings(tmp_path) == found
-
-
-def test_the_papers_histories_are_judged_by_their_peaks():
-    rows = pd.DataFrame(
-        [
-            {"panel": panel, "source": source, "outcome": "rocked", "peak_ratio": peak}
-            for panel, far in (("a", 1.1), ("b", 1.2), ("c", 1.5))
-            for source, peak in (("exact", 1.0), ("housner", far), ("modified", 1.0))
-        ]
-    )
-    assert CLAIMS[4](rows).holds is True
-    worse = rows.assign(peak_ratio=np.where(rows["panel"] == "c", 1.0, rows["peak_ratio"]))
-    assert CLAIMS[4](worse).holds is False
-    even = rows.assign(peak_ratio=rows["peak_ratio"].replace(1.5, 1.2))
-    assert CLAIMS[4](even).holds is False
-    assert CLAIMS[5](rows).holds is False

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import pandas as pd
 import pytest
 from commanding import redrawn, refused
 from declared import held_to
@@ -15,11 +14,9 @@ from engines.declaration import UNTUNED
 from engines.disclosure import Deviation
 from studies import respond
 from studies.__main__ import run
-from studies.cases.paper import HISTORIES, sweep_cases
+from studies.cases.paper import sweep_cases
 from studies.catalogue import STUDIES
-from studies.histories import study as histories
-from studies.old.journal import FolderError
-from studies.sources.registry import SOURCES, Source, UnknownSourceError, resolve
+from studies.sources.registry import SOURCES, UnknownSourceError, resolve
 
 HERE = installed_engines()
 EVERY_NAME = [
@@ -104,42 +101,6 @@ def test_the_paper_has_960_cases():
     assert (last.block.height, pulse.half_cycles) == (4.0, 2)
     assert pulse.amplitude == pytest.approx((0.25 + 0.125) * 9.81)
     assert pulse.omega == pytest.approx(4.0 * last.block.p)
-
-
-@pytest.mark.slow
-def test_the_histories_are_drawn_and_judged(tmp_path, capsys):
-    assert histories.command(out=tmp_path) == 0
-    text = capsys.readouterr().out
-    assert text.count("holds: ") == 3
-    assert "does not hold" not in text
-    drawn = {path: path.read_bytes() for path in sorted(tmp_path.glob("*.png"))}
-    assert [path.name for path in drawn] == [f"figure-{figure}.png" for figure in HISTORIES]
-    for figure, panels in HISTORIES.items():
-        samples = pd.read_csv(tmp_path / f"figure-{figure}.csv")
-        assert set(samples["panel"]) == {case.panel for case in panels}
-    for path, before in drawn.items():
-        assert len(before) > 30_000
-        path.unlink()
-    assert set(redrawn("histories", tmp_path)) == set(drawn)
-    assert {path: path.read_bytes() for path in drawn} == drawn
-
-
-def test_histories_of_named_sources_can_be_run_again(tmp_path, capsys, monkeypatch):
-    for _ in range(2):
-        assert histories.command(out=tmp_path, figure=(5,), sources=("exact",)) == 0
-        assert "not tested: In 5-b and 5-c" in capsys.readouterr().out
-    with pytest.raises(FolderError, match="sources"):
-        histories.command(out=tmp_path, figure=(5,), sources=("housner",))
-
-
-def test_a_history_that_failed_leaves_the_others(tmp_path, capsys, monkeypatch):
-    def raises(*_, **__):
-        raise RuntimeError("the engine\nsaid no")
-
-    monkeypatch.setitem(SOURCES, "raises", Source("model", raises))
-    assert histories.command(out=tmp_path, figure=(4,), sources=("raises", "exact")) == 1
-    assert "failed" in capsys.readouterr().out
-    assert set(pd.read_csv(tmp_path / "figure-4.csv")["source"]) == {"exact"}
 
 
 MADE = [
