@@ -18,15 +18,15 @@ FALL, REST, NO_ANSWER = "fall_wrong", "rest_wrong", "no_answer"
 KINDS = (FALL, REST, NO_ANSWER)
 """Kinds of wrong outcomes, which are columns of tables, too."""
 
-WORDS = {FALL: "the fall wrong", REST: "at rest for rocked", NO_ANSWER: "no answer"}
+WORDS = {FALL: "wrong overturning", REST: "missed rocking", NO_ANSWER: "no result"}
 """Kind -> its name in a sentence."""
 
 MEANINGS = {
-    FALL: "one falls, the other does not",
-    REST: "or the reverse",
-    NO_ANSWER: "it failed, or slid away",
+    FALL: "one overturns, the other does not",
+    REST: "at rest for rocking, or the reverse",
+    NO_ANSWER: "the run failed, or the block slid away",
 }
-"""Kind -> what it counts of an answer and the exact one, in brackets after its name."""
+"""Kind -> what it counts of an outcome and the exact one."""
 
 ANSWERS = tuple(outcome.value for outcome in (Outcome.AT_REST, Outcome.ROCKED, Outcome.OVERTURNED))
 """Outcomes that can be right."""
@@ -75,3 +75,9 @@ def wrong_in(rows: pd.DataFrame) -> pd.Series[Any]:
 def counted(kinds: pd.Series[Any]) -> dict[str, int]:
     """Return how many there are of each kind."""
     return {kind: int((kinds == kind).sum()) for kind in KINDS}
+
+
+def in_kinds(counts: Counts) -> str:
+    """Return how many outcomes are wrong, by kind: "wrong overturning in 3, no result in 2"."""
+    words = [f"{name} in {counts[kind]:.0f}" for kind, name in WORDS.items() if counts[kind]]
+    return ", ".join(words) or "none wrong"

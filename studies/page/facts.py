@@ -1,169 +1,94 @@
-"""What README.md and the page of the published results say, from the published tables alone."""
+"""What the README and the pages of the published results say, from the published tables alone."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import pandas as pd
 
-from analytic.models import MODELS
 from engines import ENGINES
-from studies.advise.words import setting_text
-from studies.catalogue import CHAPTERS
-from studies.old import provenance
-from studies.old.study import Chapter, Study
-from studies.old.tables import table_in
-from studies.measures.claims import TABLE, Finding, read_findings, said_once
-from studies.measures.costs import LEAST_RUNS, cost_text
-from studies.measures.differences import WELL_CONDITIONED
-from studies.measures.posed import Posed, posed
-from studies.measures.presets import engine_of, in_order, is_engine
-from studies.measures.presets import told as as_told
-from studies.measures.words import duration, in_kinds, listed, out_of, part, per_cent
+from engines.declaration import AT_REST, RECOMMENDED, Stepping
+from engines.disclosure import Help
+from engines.parts.factors import AS_BEST, BEST, DEFAULT, LEFT_OUT
+from engines.registry import OWN
+from studies.kit.say import capital, duration, listed, part
+from studies.kit.store import NOT_INSTALLED, engines_of, provenance_of, whole_runs
+from studies.kit.tables import table_in
+from studies.measures.costs import cost_text
+from studies.measures.presets import engine_of, in_order, preset_of, told
 from studies.measures.wrongness import KINDS
-from studies.precision.choices import NEAR, TYPICAL, choices
-from studies.sources.registry import grouped
-from studies.sweep.study import linearized, preset_table, whole
-from studies.sweep.study import read as read_sweep
+from studies.sweep import over_all, preset_table
 
-PRESETS_FROM = ("presets", "sweep")
-"""Folders whose summaries hold the presets of the engines."""
-
-
-def chapter_of(published: Path, study: Study, chapter: Chapter) -> dict[str, Any]:
-    """Return a chapter in words, and the names of what it left in its folder.
-
-    Returns
-    -------
-    dict
-        folder, question, claim, command; statements that were tested; pictures: names of files,
-        each with what is seen in it; texts: names of files.
-    """
-    folder = published / chapter.folder
-    return {
-        "folder": chapter.folder,
-        "question": chapter.question,
-        "claim": study.finding(folder),
-        "command": " ".join(["rocking", *command_of(study, chapter, folder)]),
-        "pictures": [
-            (path.name, study.captions.get(path.stem, path.stem))
-            for path in sorted(folder.glob("*.png"))
-        ],
-        "texts": sorted(path.name for path in folder.glob("*.txt")),
-        "statements": statements_of(folder),
-    }
-
-
-def command_of(study: Study, chapter: Chapter, folder: Path) -> list[str]:
-    """Return the words after `rocking` that make a published folder: with all who answer in it."""
-    words, parameters = study.command_line(chapter, Path("DIR"), full=True), study.parameters
-    option = next((name for name in ("sources", "engines") if name in parameters), "")
-    answered = list(provenance.record_of(folder).get("made", {}).get("rows", {}))
-    usual = parameters[option].default if option else None
-    if not answered or usual is None or f"--{option}" in words:
-        return words
-    if all(map(is_engine, usual)):
-        answered = list(filter(is_engine, answered))
-    elif not set(answered).intersection(MODELS):  # they have no rows of their own
-        answered = [*filter(MODELS.__contains__, usual), *answered]
-    if option == "engines":
-        answered = list(dict.fromkeys(map(engine_of, answered)))
-    if set(answered) == set(usual):
-        return words
-    return [*words, f"--{option}", *(grouped(answered) if option == "sources" else answered)]
-
-
-def statements_of(folder: Path) -> list[Finding]:
-    """Return the statements that a study tested; what it could not test is no finding."""
-    if not (folder / TABLE).is_file():
-        return []
-    return said_once(item for item in read_findings(folder) if item.holds is not None)
-
-
-def chapters(published: Path) -> list[dict[str, Any]]:
-    """Return every published chapter in words."""
-    return [
-        chapter_of(published, *place) for place in CHAPTERS if is_published(published, place[1])
-    ]
-
-
-def is_published(published: Path, chapter: Chapter) -> bool:
-    """Say whether a chapter has published results."""
-    return (published / chapter.folder / "provenance.json").is_file()
-
-
-def missing(published: Path) -> list[str]:
-    """Return the folders of the chapters without published results."""
-    return [each.folder for _, each in CHAPTERS if not is_published(published, each)]
+Line: TypeAlias = "Mapping[Any, Any] | pd.Series[Any]"
+"""A line of a table."""
+Table: TypeAlias = tuple[list[str], list[list[str]]]
+"""Heads, and the cells of each row."""
+TITLES = {name: ENGINES[name].title for name in OWN}
+FIRST = "first.json"
+"""Provenance of the sweep in another folder, where it was the first run after an installation."""
+TRIED = 2
+"""Single settings that are shown of each engine, of all that were tried."""
 
 
 def presets(published: Path) -> pd.DataFrame:
-    """Return a line for each preset and engine over the paper's cases, of what a folder holds."""
-    lines = pd.concat([preset_table(whole(folder)) for folder in _with_presets(published)])
+    """Return a line for each preset and engine over the paper's cases."""
+    folders = [published / name for name in ("presets", "sweep")]
+    known = [table_in(folder, "summary") for folder in folders]
+    lines = pd.concat([preset_table(over_all(each)) for each in known if len(each)])
     return lines if lines.empty else lines.drop_duplicates("source", ignore_index=True)
 
 
-def asked(published: Path) -> Posed:
-    """Return what the engines' presets were asked of the paper's cases."""
-    return posed(read_sweep(_with_presets(published)[0]))
+def models(published: Path) -> dict[str, Line]:
+    """Return the line of each model over the paper's cases."""
+    lines = over_all(table_in(published / "sweep", "summary"))
+    return {str(line["source"]): line for line in lines.to_dict("records")}
 
 
-def _with_presets(published: Path) -> list[Path]:
-    folders = [published / name for name in PRESETS_FROM]
-    return [folder for folder in folders if (folder / "summary.csv").is_file()]
+def in_scenes(published: Path) -> Table:
+    """Return a row for each engine: errors and times with its first and its best preset."""
+    block = presets(published).rename(columns={"median": "error", "ms": "time"})
+    frame = table_in(published / "scenes", "frame-summary").rename(
+        columns={"median_error": "error", "ms_a_frame": "time"}
+    )
+    heads, rows = ["engine", "settings", "block", "run time", "frame", "run time"], []
+    lines = {"block": block.assign(wrong=block[list(KINDS)].sum(axis=1)), "frame": frame}
+    for name in dict.fromkeys(block["engine"]):
+        mine = [known[known["source"].map(engine_of) == name] for known in lines.values()]
+        order = in_order(mine[0]["source"].map(preset_of))
+        for preset in dict.fromkeys((order[0], order[-1])):
+            cells = [cell for known in mine for cell in _outcomes(known, preset)]
+            first = f"**{TITLES.get(name, name)}**" if preset == order[0] else ""
+            rows.append([first, told(preset).short, *cells])
+    return heads, rows
 
 
-def shared(lines: pd.DataFrame) -> list[str]:
-    """Return the presets that several engines have, in order; all, where there is none such."""
-    counts = lines["preset"].value_counts()
-    return in_order(counts.index[counts > 1] if counts.max() > 1 else counts.index)
+def _outcomes(lines: pd.DataFrame, preset: str) -> list[str]:
+    for line in lines[lines["source"].map(preset_of) == preset].to_dict("records"):
+        wrong = f", {line['wrong']:.0f} wrong" if line["wrong"] else ""
+        return [f"{part(line['error'])}{wrong}", duration(1e-3 * line["time"])]
+    return ["–", "–"]
 
 
-def by_preset(
-    lines: pd.DataFrame, say: Callable[[float], str] = part
-) -> tuple[list[str], list[list[str]]]:
-    """Return heads, and a row for each engine with a cell for each preset.
-
-    Parameters
-    ----------
-    lines : DataFrame
-        engine, preset, the kinds of wrong outcomes, median_error, largest_error and ms.
-    say : callable, optional
-        What says an error.
-    """
-    names = shared(lines)
-    heads = [f"{as_told(name).short} `:{name}`" for name in names]
-    rows = []
-    for engine, mine in lines.groupby("engine", sort=False):
-        cells = {row["preset"]: _short(row, say) for _, row in mine.iterrows()}
-        alone = [f"`:{name}`<br>{cell}" for name, cell in cells.items() if name not in names]
-        shown = [cells.get(name, "–") for name in names]
-        if alone:
-            shown[-1] = "<br>".join([*({shown[-1]} - {"–"}), *alone])
-        rows.append([f"**{ENGINES[str(engine)].title}**", *shown])
-    return ["", *heads], rows
+def in_scene(published: Path, name: str) -> Table:
+    """Return the summary of a scene's engines, its numbers in words."""
+    lines = table_in(published / "scenes", f"{name}-summary")
+    rows = [
+        ["–" if isinstance(cell, float) and math.isnan(cell) else _cell(str(head), cell)
+         for head, cell in line.items()]
+        for line in lines.to_dict("records")
+    ]  # fmt: skip
+    return [str(head).replace("_", " ") for head in lines], rows
 
 
-def _short(row: pd.Series[Any], say: Callable[[float], str]) -> str:
-    wrong = in_kinds(row).removeprefix("the ").replace(", ", "<br>").replace(" and ", "<br>")
-    parts = [
-        f"**{wrong}**" if any(row[list(KINDS)]) else wrong,
-        f"{say(row['median_error'])}, max {say(row['largest_error'])}",
-        duration(1e-3 * row["ms"]),
-    ]
-    if math.isnan(row["median_error"]):
-        del parts[1]
-    return "<br>".join(words.replace(" ", "\N{NO-BREAK SPACE}") for words in parts)
-
-
-def models(published: Path) -> dict[str, str]:
-    """Return which outcomes of the paper's cases each linearization gets wrong."""
-    lines = linearized(whole(published / "sweep"))
-    return {str(row["source"]): in_kinds(row) for _, row in lines.iterrows()}
+def _cell(head: str, value: Any) -> str:
+    if not isinstance(value, float):
+        return f"`{value}`" if head == "source" else str(value)
+    return part(value) if head.endswith(("error", "rest", "carried")) else f"{value:.3g}"
 
 
 def advised(published: Path) -> list[list[str]]:
@@ -171,84 +96,186 @@ def advised(published: Path) -> list[list[str]]:
     rows = []
     for target, group in table_in(published / "advice", "advice").groupby("target", sort=False):
         best = group[group["message"] == ""].nsmallest(1, "wall_s")
-        cells = [_advice(line) for _, line in best.iterrows()] or [("nothing does", "–")]
-        rows.append([per_cent(float(str(target))), *cells[0]])
+        cells = ["none", "–", "–"]
+        for line in best.to_dict("records"):
+            known = f"{line['random_off']:.0f} of {line['random_cases']:.0f}"
+            cells = [
+                _setting(line),
+                cost_text(line["wall_s"], line["runs"]),
+                known if line["random_cases"] else "–",
+            ]
+        rows.append([f"{100.0 * float(str(target)):g} %", *cells])
     return rows
 
 
-def _advice(line: pd.Series[Any]) -> tuple[str, str]:
-    at = setting_text(line)
-    # what is advised has none off whose κ is small: the line above the table says so
-    off = f"{out_of(line['random_off'], line['random_cases'])} off" if line["random_cases"] else ""
-    return (f"{at}; {off}" if off else at), cost_text(line["wall_s"], line["runs"])
-
-
-def choices_of(published: Path) -> dict[tuple[float, str], dict[str, Any]]:
-    """Return which setting for which accuracy, as of `choices`."""
-    return choices(pd.read_csv(published / "precision" / "work-precision.csv"))
-
-
-def counts(published: Path) -> dict[str, int]:
-    """Return how many cases the tables on the first screen are about."""
-    lines = pd.read_csv(published / "precision" / "work-precision.csv")
-    each = lines.groupby("set")["cases"].max()
-    return {
-        "paper": int(presets(published)["cases"].max()),
-        "engines": presets(published)["engine"].nunique(),
-        "typical": int(each[TYPICAL]),
-        "near": int(each[NEAR]),
-        "calm": int(WELL_CONDITIONED),
-        "runs": LEAST_RUNS,
-    }
+def _setting(line: Line) -> str:
+    lands = ENGINES[line["engine"]].preset(line["preset"]).stepping is not Stepping.FIXED
+    how = f"accuracy {line['value']}" if lands else f"p dt = {line['value']}"
+    return f"`{line['engine']}:{line['preset']}`, {how}"
 
 
 def made(published: Path) -> dict[str, str]:
     """Return on what machine, with what versions and when the paper's cases were run."""
-    sweep = provenance.record_of(published / "sweep")
-    machine, first = sweep["machine"], published / "sweep" / FIRST
+    sweep, first = provenance_of(published / "sweep"), published / "sweep" / FIRST
     others = [json.loads(first.read_text(encoding="utf-8"))] if first.is_file() else []
-    versions = provenance.engines_of(provenance.record_of(_with_presets(published)[0]))
-    asked = presets(published)["engine"].unique()
-    packages = [name for engine in asked for name in ENGINES[engine].packages if name in versions]
+    versions = engines_of(provenance_of(published / "presets") or sweep)
+    packages = [name for one in OWN for name in ENGINES[one].packages if name in versions]
+    known = [name for name in packages if versions[name] != NOT_INSTALLED]
     return {
-        "engines": listed([f"{name} {versions[name]}" for name in packages]),
-        "machine": f"{machine['cpu']}, {machine['cores']} cores",
+        "engines": listed([f"{name} {versions[name]}" for name in known]),
+        "machine": f"{sweep['machine']['cpu']}, {sweep['machine']['cores']} cores",
         "date": sweep["runs"][-1]["start"][:10],
         "sweep": lasts(sweep, *others),
     }
 
 
-FIRST = "first.json"
-"""Provenance of the sweep in another folder, where it was the first run after an installation."""
-
-
 def lasts(*records: Mapping[str, Any]) -> str:
-    """Return how long the same command takes, at the first run after an installation and later.
-
-    Raises
-    ------
-    ValueError
-        If the records are of different commands, machines or versions; of an engine that one does
-        not know, neither asked.
-    """
-    same = ("study", "version", "machine", "settings")
-    engines = [
-        {name: kept for name, kept in record["engines"].items() if kept != provenance.NOT_INSTALLED}
-        for record in records
-    ]
-    known = sorted(set.intersection(*map(set, engines)))
-    told = [
-        [*(record[name] for name in same), *(found[engine] for engine in known)]
-        for record, found in zip(records, engines, strict=True)
-    ]
-    if any(one != told[0] for one in told):
-        raise ValueError(f"the provenances of two runs differ in engines or {', '.join(same)}")
-    runs = [run for record in records for run in provenance.whole_runs(record)]
-    times = {run["first"]: f"{run['duration_s']:.0f} s" for run in runs}
+    """Return how long the sweep takes, at the first run after an installation and later."""
+    runs = [run for record in records for run in whole_runs(record)]
+    times = {bool(run.get("first")): f"{run['duration_s']:.0f} s" for run in runs}
     first, later = (times.get(kind, "a time that was not measured") for kind in (True, False))
     return f"{first} the first time, when its functions are compiled, and for {later} later"
 
 
-def minutes(full: bool) -> int:
-    """Return about how many minutes a report takes on two cores."""
-    return round(sum(chapter.minutes[full] for _, chapter in CHAPTERS))
+def once(rows: Iterator[Sequence[str]]) -> list[list[str]]:
+    """Return rows whose first cell is left empty where it is that of the row before."""
+    found: list[list[str]] = []
+    before = ""
+    for first, *others in rows:
+        found.append(["" if first == before else first, *others])
+        before = first
+    return found
+
+
+def documented() -> Iterator[tuple[str, ...]]:
+    """Yield what the documentation of each engine sets or recommends, and where it says so."""
+    for name in OWN:
+        for use in ENGINES[name].presets:
+            yield from ((f"{TITLES[name]} `:{use.name}`", *source) for source in use.documented)
+
+
+def beside_own() -> str:
+    """Return which settings of "naive" are not the libraries' own, and what those would be."""
+    own = {TITLES[name]: ENGINES[name].preset(DEFAULT) for name in OWN}
+    said = []
+    for setting in dict.fromkeys(name for preset in own.values() for name in preset.own):
+        having = {title: preset for title, preset in own.items() if setting in preset.own}
+        (value,) = {getattr(preset.settings, setting) for preset in having.values()}
+        theirs: dict[Any, list[str]] = {}
+        for title, preset in having.items():
+            theirs.setdefault(preset.own[setting], []).append(title)
+        words = [f"{other} in {listed(titles)}" for other, titles in theirs.items()]
+        said.append(f"`{setting}` is {value} here, by default {listed(words)}")
+    return "; ".join(said)
+
+
+@cache
+def _variants(published: Path, name: str = "variants") -> pd.DataFrame:
+    return table_in(published / "contact", name, "factor", "level", "trap")
+
+
+def variant_of(
+    lines: pd.DataFrame, engine: str, preset: str, factor: str = "", level: str = ""
+) -> Line | None:
+    """Return the line of a preset, or of a variant of it; None where there is none."""
+    wanted = (lines["engine"] == engine) & (lines["preset"] == preset)
+    wanted &= lines["factor"] == factor
+    if level:
+        wanted &= lines["level"] == level
+    return lines[wanted].iloc[0] if wanted.any() else None
+
+
+def _errors(line: Line, columns: Sequence[str] = ("median_error", "max_error")) -> str:
+    """Return errors of a variant, and how many of its cases are wrong."""
+    if line["failed"] == line["cases"]:
+        return "no result"
+    errors = ", at most ".join(part(line[name]) for name in columns)
+    broken = int(line["failed"]) + int(line["wrong"])
+    return errors + (f", {broken} of {line['cases']} wrong" if broken else "")
+
+
+def helps(published: Path) -> Table:
+    """Return the largest error of landing in each engine, and without each thing it does for it."""
+    lines = _variants(published)
+    engines = [name for name in OWN if ENGINES[name].best.stepping is Stepping.LANDING]
+    price = {name: _prices(lines, name) for name in engines}
+    helped = {name: ENGINES[name].best.helped_by for name in engines}
+    rows = [["**All of it**", *(f"**{price[name].get('', '-')}**" for name in engines)]]
+    rows += [
+        [
+            capital(each.value),
+            *(
+                price[name].get(each.name, "yes") if each in helped[name] else "–"
+                for name in engines
+            ),
+        ]
+        for each in Help
+        if any(each in given for given in helped.values())
+    ]
+    return ["landing without", *(TITLES[name] for name in engines)], rows
+
+
+def _prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
+    best = ENGINES[engine].best.name
+    mine = lines[(lines["engine"] == engine) & (lines["preset"] == best)]
+    asked = mine[mine["factor"].isin(["", LEFT_OUT])].to_dict("records")
+    words = {
+        line["level"].upper() if line["factor"] else "": _errors(line, ("max_error",))
+        for line in asked
+    }
+    equal = variant_of(lines, engine, BEST)
+    return words | ({} if equal is None else {"STEPS": _errors(equal, ("max_error",))})
+
+
+def rules(published: Path) -> Iterator[tuple[str, str, str, str]]:
+    """Yield the engine and each rule that helps, and the errors without and with it.
+
+    One helps if fewer outcomes are wrong with it, or as many and the median error is smaller.
+    """
+    lines = _variants(published)
+    for engine in OWN:
+        for rule in ENGINES[engine].rules:
+            plain = variant_of(lines, engine, rule.preset)
+            other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
+            if plain is not None and other is not None:
+                pair = (plain, other) if rule.kept else (other, plain)
+                wrong, kept = ((it["failed"] + it["wrong"], it["median_error"]) for it in pair)
+                without, with_it = map(_errors, pair)
+                if kept < wrong:
+                    yield TITLES[engine], rule.words, without, with_it
+
+
+def objections(published: Path) -> Iterator[tuple[str, ...]]:
+    """Yield an engine's title and what was tried in its favour, with the errors beside it."""
+    lines, own = presets(published), _variants(published, "own-steps")
+    for engine in OWN:
+        mine = {line["preset"]: line for _, line in lines[lines["engine"] == engine].iterrows()}
+        for name in (RECOMMENDED, AT_REST):
+            if {name, DEFAULT} <= mine.keys():
+                pair = [_of_preset(mine[each]) for each in (DEFAULT, name)]
+                yield TITLES[engine], told(name).short, f"{mine[name]['cases']} cases", *pair
+        plain = variant_of(own, engine, DEFAULT)
+        if plain is not None:
+            for line in _better(own, engine, plain):
+                setting = f"{line['factor']}: {line['level']}".replace(AS_BEST, f"as `:{BEST}`")
+                cases = f"{plain['cases']} of them"
+                yield TITLES[engine], setting, cases, _errors(plain), _errors(line)
+
+
+def _of_preset(line: Line) -> str:
+    wrong = line["cases"] - line["right"]
+    errors = f"{part(line['median'])}, at most {part(line['max'])}"
+    return errors + (f", {wrong} of {line['cases']} wrong" if wrong else "")
+
+
+def _better(lines: pd.DataFrame, engine: str, plain: Line) -> list[dict[Any, Any]]:
+    """Return the single settings that lower the median error most without more wrong outcomes."""
+    mine = (lines["engine"] == engine) & (lines["preset"] == DEFAULT)
+    varied = lines[mine & (lines["factor"] != "") & (lines["trap"] == "")]
+    wrong = varied["failed"] + varied["wrong"]
+    better = varied[
+        (wrong <= plain["failed"] + plain["wrong"])
+        & (varied["median_error"] < plain["median_error"])
+    ].sort_values("median_error")
+    alike = better["median_error"].map("{:.3e}".format)  # two names of one thing
+    return better[~alike.duplicated() & ~better["factor"].duplicated()].head(TRIED).to_dict("records")

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-import itertools
 import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,21 +14,27 @@ from matplotlib.figure import Figure
 
 from engines import ENGINES
 from studies.cases.paper import PULSES
-from studies.catalogue import CHAPTERS
-from studies.defaults.study import INVALID, read
 from studies.drawing.figures import lay_out, write_points
-from studies.old import provenance
-from studies.old.study import Chapter, Study
-from studies.old.tables import SMALL, read_table
-from studies.measures.presets import in_words
-from studies.measures.words import capital, in_kinds, meant, part
-from studies.measures.wrongness import KINDS
-from studies.page.facts import asked, presets, shared, statements_of
+from studies.kit.say import SMALL, part
+from studies.kit.store import engines_of, provenance_of
+from studies.kit.tables import table_in, write_text
+from studies.measures.presets import in_order, in_words
+from studies.measures.wrongness import KINDS, MEANINGS, WORDS, in_kinds
+from studies.page.chapters import CHAPTERS, PARTS, Part, statements
+from studies.page.facts import presets
 from studies.sources.registry import resolve
-from studies.sweep.study import verdict
+from studies.sweep import STUDY as SWEEP
 
 GOOD, BAD = 1e-3, 0.1
 """Largest errors below which, and above which, a tile is marked."""
+SHOWN = 20
+"""Rows of a table, and failures, that are shown; files hold all of them."""
+LARGE = 100_000
+"""Bytes up to which a figure is held as its lines; beyond, as points where that is less."""
+DIGITS, OVERTURNED = 5, -1.0
+"""Of a peak in the page, and what stands in its place; a case that failed has None."""
+AXES = ("half_cycles", "aspect", "width_m", "onsets", "omega_over_p")
+"""Columns of the grid of cases, the last running fastest."""
 
 
 def write_page(path: Path, folder: Path, full: bool) -> None:
@@ -41,113 +45,88 @@ def write_page(path: Path, folder: Path, full: bool) -> None:
     path : Path
         The HTML file; it holds its pictures itself.
     folder : Path
-        With a folder inside for each of CHAPTERS, as `rocking report` fills it.
+        With a folder inside for each of PARTS, as `rocking report` fills it.
     full : bool
-        Whether it was filled by the full commands, which the page names, or by the quick ones.
+        Whether the full commands filled it, or the quick ones.
 
     Raises
     ------
     OSError
-        If the provenance or a table of a folder is missing, or the file cannot be written.
+        If the file cannot be written.
     """
     environment = Environment(loader=PackageLoader("studies.page", "."), autoescape=True)
+    chapters = {
+        title: [_section(one, folder / one.folder, full) for one in parts]
+        for title, parts in CHAPTERS.items()
+    }
     text = environment.get_template("page.html").render(
-        chapters=[_section(*place, folder / place[1].folder, full) for place in CHAPTERS],
-        made=_provenance(folder / CHAPTERS[0][1].folder),
+        chapters=chapters,
+        made=_made(folder / PARTS[0].folder),
         full=full,
         shown=SHOWN,
         cases=engine_cases(folder),
         **first_sight(folder),
     )
-    provenance.write_text(path, text)
+    write_text(path, text)
 
 
 def first_sight(folder: Path) -> dict[str, Any]:
-    """Return the verdict, and a tile for each engine and preset of what the folder holds.
+    """Return the verdict, and a tile for each engine and preset that the folder holds.
 
     Returns
     -------
     dict
-        verdict, what was asked, and what each kind of wrong counts, in words; presets: how they are
-        used, in words; tiles: engine -> a tile for each of these, or None.
+        verdict; wrong: what each kind of wrong outcome counts; presets: names; tiles: title of an
+        engine -> a tile for each of these, or None.
     """
     lines = presets(folder)
     if lines.empty:
         return {"verdict": ""}
-    names = shared(lines)
+    names = in_order(lines["preset"])
     tiles = {}
     for engine, group in lines.groupby("engine", sort=False):
-        mine = {row["preset"]: _tile(row) for _, row in group.iterrows()}
-        row = [mine.get(name) for name in names]
-        alone = [{**tile, "preset": name} for name, tile in mine.items() if name not in names]
-        tiles[ENGINES[str(engine)].title] = [*row[:-1], row[-1] or next(iter(alone), None)]
+        mine = {line["preset"]: _tile(line) for line in group.to_dict("records")}
+        tiles[ENGINES[str(engine)].title] = [mine.get(name) for name in names]
+    place = "presets" if (folder / "presets").is_dir() else "sweep"
     return {
-        "verdict": verdict(lines),
-        "asked": capital(asked(folder).words),
-        "wrong": meant(),
+        "verdict": SWEEP.finding(SWEEP.read(folder / place)),
+        "cases": int(lines["cases"].max()),
+        "wrong": "; ".join(f"{name}: {MEANINGS[kind]}" for kind, name in WORDS.items()),
         "presets": list(map(in_words, names)),
         "tiles": tiles,
     }
 
 
-def _tile(row: pd.Series[Any]) -> dict[str, str]:
-    lost = any(row[list(KINDS)])
-    good, bad = not lost and row["max"] < GOOD, lost or row["max"] > BAD
+def _tile(line: dict[Any, Any]) -> dict[str, str]:
+    lost = any(line[kind] for kind in KINDS)
+    good, bad = not lost and line["max"] < GOOD, lost or line["max"] > BAD
     return {
         "kind": "good" if good else "bad" if bad else "",
-        "wrong": in_kinds(row),
-        "median": _unbroken(part(row["median"])),
-        "max": f"max {_unbroken(part(row['max']))}",
+        "wrong": in_kinds(line),
+        "median": part(line["median"]),
+        "max": f"at most {part(line['max'])}",
     }
 
 
-def _unbroken(words: str) -> str:
-    return words.replace(" ", "\N{NO-BREAK SPACE}")
-
-
-def _section(study: Study, chapter: Chapter, folder: Path, full: bool) -> dict[str, Any]:
+def _section(one: Part, folder: Path, full: bool) -> dict[str, Any]:
+    study, tables = one.study, one.study.read(folder)
+    drawn = study.figures(tables)
     return {
-        "folder": chapter.folder,
-        "question": chapter.question,
-        "claim": study.finding(folder),
-        "statements": statements_of(folder),
-        "full_command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), True)),
+        "folder": one.folder,
+        "question": one.question,
+        "claim": study.finding(tables),
+        "statements": statements(tables),
+        "full_command": " ".join(["rocking", *one.words("DIR", True)]),
         "how": study.help,
-        "weaker": chapter.weaker,
-        "command": "rocking " + " ".join(study.command_line(chapter, Path("DIR"), full)),
-        "pictures": [
-            (study.captions.get(name, name), embedded(drawn))
-            for name, drawn in study.pictures(folder).items()
-        ],
-        "texts": [(path.stem, prose(path.read_text())) for path in sorted(folder.glob("*.txt"))],
+        "weaker": one.weaker or study.quick,
+        "command": " ".join(["rocking", *one.words("DIR", full)]),
+        "pictures": [(study.caption_of(name), embedded(each)) for name, each in drawn.items()],
         "tables": [
             (name, len(rows), *table(rows.head(SHOWN)))
-            for name, rows in _tables(chapter, folder, study.load())
+            for name, rows in study.shown(tables).items()
         ],
-        "failures": failures(folder, study.table),
+        "failures": failures(tables),
     }
-
-
-def prose(text: str) -> list[tuple[bool, list[str]]]:
-    """Return a text in parts, each with whether its lines are aligned as a table's."""
-    lines = [line for line in text.splitlines() if line.strip()]
-    parts = [
-        (tabular, list(part))
-        for tabular, part in itertools.groupby(lines, lambda line: "  " in line.strip())
-    ]
-    return [
-        (tabular, [*part[: SHOWN + 1], f"and {len(part) - SHOWN - 1} more rows"])
-        if tabular and len(part) > SHOWN + 1
-        else (tabular, part)
-        for tabular, part in parts
-    ]
-
-
-SHOWN = 20
-"""Rows of a table, lines of one in a text, and failures that are shown; files hold all of them."""
-
-LARGE = 100_000
-"""Bytes up to which a figure is held as its lines; beyond, as points where that is less."""
 
 
 def embedded(drawing: Figure) -> str:
@@ -157,20 +136,13 @@ def embedded(drawing: Figure) -> str:
     drawing.savefig(lines, format="svg", metadata={"Date": None})
     if lines.tell() > LARGE:
         write_points(drawing, points)
-    return (
-        _address("png", points) if 0 < points.tell() < lines.tell() else _address("svg+xml", lines)
-    )
+    if 0 < points.tell() < lines.tell():
+        return _address("png", points)
+    return _address("svg+xml", lines)
 
 
 def _address(kind: str, image: io.BytesIO) -> str:
     return f"data:image/{kind};base64," + base64.b64encode(image.getvalue()).decode()
-
-
-def _tables(chapter: Chapter, folder: Path, study: Any) -> Iterator[tuple[str, pd.DataFrame]]:
-    """Yield a chapter's tables, and others of a study that has them."""
-    yield from ((name, read_table(folder / name)) for name in chapter.tables)
-    if hasattr(study, "shown"):
-        yield from study.shown(folder).items()
 
 
 def table(rows: pd.DataFrame) -> tuple[list[str], list[list[tuple[str, str]]]]:
@@ -188,11 +160,10 @@ def cell(value: Any) -> tuple[str, str]:
     return f"{value:.3e}" if small else f"{value:.4g}", repr(value)
 
 
-def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
-    """Return how often each source of a study failed, and of what."""
+def failures(tables: dict[str, pd.DataFrame]) -> list[dict[Any, Any]]:
+    """Return how often each source of a study failed, and why."""
     found: list[dict[Any, Any]] = []
-    for path in sorted(folder.glob(pattern)):
-        rows = read_table(path)
+    for rows in tables.values():
         if {"source", "outcome", "message"} <= set(rows.columns):
             failed = rows[rows["outcome"] == "failed"]
             counts = failed.groupby(["source", "message"], sort=False).size().reset_index(name="n")
@@ -200,14 +171,9 @@ def failures(folder: Path, pattern: str) -> list[dict[Any, Any]]:
     return found
 
 
-def _provenance(folder: Path) -> list[tuple[str, str]]:
-    record = provenance.record_of(folder)
-    versions = {
-        **provenance.engines_of(record),
-        "python": record["python"],
-        **record["packages"],
-        **record["tools"],
-    }
+def _made(folder: Path) -> list[tuple[str, str]]:
+    record = provenance_of(folder)
+    versions = {**engines_of(record), "python": record["python"], **record["packages"]}
     return [
         ("project", f"{record['version']}, commit {(record['git'] or {}).get('commit', '-')}"),
         ("versions", ", ".join(f"{name} {version}" for name, version in versions.items())),
@@ -216,28 +182,19 @@ def _provenance(folder: Path) -> list[tuple[str, str]]:
     ]
 
 
-DIGITS = 5
-OVERTURNED = -1.0
-"""What stands in place of a peak; a case that failed has None."""
-AXES = ("half_cycles", "aspect", "width_m", "onsets", "omega_over_p")
-"""Columns of the grid, the last running fastest."""
-
-
 def engine_cases(folder: Path) -> dict[str, Any]:
-    """Return what the exact solution and the engines answer on the grid of `rocking defaults`.
+    """Return the peaks of the exact solution and of engines on a grid of pulses and blocks.
 
     Returns
     -------
     dict
-        Of each of AXES its values; peaks: source -> the peaks of all cases, in their order, without
-        the study's table of no source; judged: of each case 1, or 0 where the block would slide or
-        lift off; rests: for how long all is at rest before the pulse of each [s]; written: the
-        sources that `rocking export` writes out.
+        Of each of AXES its values; peaks: source -> the peaks of all cases, in their order; judged:
+        of each case 1, or 0 where the block would slide or lift off; rests: for how long all is at
+        rest before the pulse of each [s]; written: the sources that `rocking export` writes out.
     """
-    path = folder / "defaults" / "defaults.csv"
-    if not path.is_file():
+    rows = table_in(folder / "defaults", "defaults")
+    if rows.empty:
         return {"peaks": {}}
-    rows = read(path.parent)
     rows = rows.assign(
         half_cycles=rows["pulse"].map(PULSES),
         peak=rows["peak_ratio"].mask(rows["outcome"] == "overturned", OVERTURNED),
@@ -251,7 +208,7 @@ def engine_cases(folder: Path) -> dict[str, Any]:
         ]
         for name in rows["source"].unique()
     }
-    slides = rows[rows["verdict"] == INVALID].drop_duplicates(list(AXES))
+    slides = rows[rows["verdict"] == "invalid"].drop_duplicates(list(AXES))
     judged = 1 - order.isin(pd.MultiIndex.from_frame(slides[list(AXES)])).astype(int)
     rests = rows.drop_duplicates(list(AXES)).set_index(list(AXES))["rest_s"].reindex(order)
     return {
@@ -264,6 +221,6 @@ def engine_cases(folder: Path) -> dict[str, Any]:
 
 
 def written_out(source: str) -> bool:
-    """Say whether `rocking export` writes a source out: an engine with equal steps and a script."""
+    """Return whether `rocking export` writes a source out: an engine with equal steps."""
     asked = resolve(source)
     return bool(asked.engine and asked.declared.script) and not asked.accurate

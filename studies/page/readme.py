@@ -2,34 +2,34 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from engines import ENGINES
+from analytic.block import GRAVITY, RigidBlock
+from analytic.motion import SinePulse
 from engines.troubles import TROUBLES
-from studies import scenes
-from studies.catalogue import CHAPTERS
-from studies.old import provenance
-from studies.old.arguments import BadInputError
-from studies.old.journal import PROVENANCE
-from studies.old.provenance import check, seal
-from studies.measures.costs import OUTDATED, STEPPED, cost_text
+from studies.cases.paper import free_rocking_window
+from studies.cases.refusal import BadInputError
+from studies.kit.jobs import Job, Question, ask
+from studies.kit.say import capital, duration, part
+from studies.kit.store import check, versions, write_record
+from studies.kit.tables import read_table, tables_of, write_table, write_text
+from studies.measures.costs import OUTDATED, STEPPED
 from studies.measures.presets import in_words
 from studies.measures.published import dictionary
-from studies.measures.words import capital, duration, meant, part, per_cent
-from studies.measures.wrongness import WORDS
-from studies.page import engine_facts, facts, hero, scene_facts
-from studies.precision import COST
-from studies.precision.choices import TARGETS
-from studies.sweep.study import verdict
+from studies.measures.samples import samples
+from studies.measures.wrongness import MEANINGS, WORDS, in_kinds
+from studies.page import facts
+from studies.page.chapters import CHAPTERS, Part, published_parts, statements
+from studies.sources.registry import core_sources
+from studies.sweep import STUDY as SWEEP
 
 PUBLISHED = Path("studies", "published")
-
 PAGES = {
     Path("README.md"): "readme.md.jinja",
     PUBLISHED / "README.md": "published.md.jinja",
@@ -37,6 +37,11 @@ PAGES = {
     PUBLISHED / "scenes.md": "scenes.md.jinja",
 }
 """Page -> its template."""
+BLOCK = RigidBlock(width=0.5, height=1.5)
+PULSE = SinePulse(amplitude=0.4 * GRAVITY, omega=6.2832, half_cycles=2)
+SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
+SAMPLES, DIGITS = 401, 9
+"""Of the histories in the first picture."""
 
 
 def command(*, root: Path = Path()) -> int:
@@ -52,27 +57,44 @@ def command(*, root: Path = Path()) -> int:
     from studies.drawing.block import draw_block, draw_hero
     from studies.drawing.figures import save_all
 
-    folder = root / PUBLISHED / "hero"
-    if not (root / PUBLISHED).is_dir():
+    published, folder = root / PUBLISHED, root / PUBLISHED / "hero"
+    if not published.is_dir():
         raise BadInputError(f"--root is {str(root)!r}; it must hold {PUBLISHED}")
-    for study, chapter in CHAPTERS:
-        check(root / PUBLISHED / chapter.folder, study.tables, "a published folder")
-    check(root / PUBLISHED / COST.name, COST.tables, "a published folder")  # of no chapter
+    for one in published_parts(published):
+        names = [path.name for path in tables_of(published / one.folder)]
+        check(published / one.folder, names, "a published folder")
     folder.mkdir(exist_ok=True)
-    hero.measure(folder / "hero.csv")
-    made_with = {**provenance.subject("readme"), **provenance.versions()}
-    provenance.write_text(folder / PROVENANCE, json.dumps(made_with, indent=2) + "\n")
-    seal(folder)
-    samples = pd.read_csv(folder / "hero.csv")
-    drawn = {
-        "block": draw_block(),
-        "hero": draw_hero(hero.BLOCK, samples, hero.summary(samples)),
-    }
+    write_table(folder / "hero.csv", measure_hero())
+    write_record(folder, {"study": "readme", **versions({})})
+    histories = read_table(folder / "hero.csv")
+    drawn = {"block": draw_block(), "hero": draw_hero(BLOCK, histories, summary(histories))}
     save_all(drawn, folder)
     for path, text in pages(root).items():
-        provenance.write_text(path, text)
+        write_text(path, text)
         print(path)
     return 0
+
+
+def measure_hero() -> pd.DataFrame:
+    """Return the histories of one block under one pulse, from the sources of the first picture."""
+    window = free_rocking_window(BLOCK, PULSE)
+    times = np.linspace(0.0, window, SAMPLES)
+    case = Question(system=BLOCK, motion=PULSE, duration=window, times=times)
+    parts = []
+    for name in SOURCES:
+        response = ask(Job(labels={}, case=case, source=name))
+        labels = {"source": name, "peak_ratio": response.peak_ratio}
+        found = samples(response, BLOCK, PULSE, labels)
+        parts.append(found[["source", "outcome", "peak_ratio", "time_s", "theta_ratio"]])
+    return pd.concat(parts, ignore_index=True).round({"time_s": DIGITS, "theta_ratio": DIGITS})
+
+
+def summary(histories: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each source: its outcome, its peak and the error of that."""
+    lines = histories.groupby("source", sort=False)[["outcome", "peak_ratio"]].first().reset_index()
+    exact = float(lines.loc[lines["source"] == "exact", "peak_ratio"].iloc[0])
+    survived = lines["outcome"] == "rocked"
+    return lines.assign(error=(lines["peak_ratio"] / exact - 1.0).where(survived))
 
 
 def row(cells: Sequence[object]) -> str:
@@ -85,9 +107,24 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[object]] = ()) -> str:
     return "\n".join(map(row, (heads, ["---"] * len(heads), *rows)))
 
 
+def in_words_of(one: Part, published: Path) -> dict[str, Any]:
+    """Return what the page of the published results says of a part, and its files."""
+    folder, study = published / one.folder, one.study
+    tables = study.read(folder)
+    return {
+        "folder": one.folder,
+        "question": one.question,
+        "claim": study.finding(tables),
+        "command": " ".join(["rocking", *one.words("DIR", full=True)]),
+        "pictures": [(p.name, study.caption_of(p.stem)) for p in sorted(folder.glob("*.png"))],
+        "statements": statements(tables),
+    }
+
+
 def pages(root: Path) -> dict[Path, str]:
     """Return the text of each page that is made from the published tables."""
     published = root / PUBLISHED
+    known = published_parts(published)
     environment = Environment(
         loader=PackageLoader("studies.page", "."),
         undefined=StrictUndefined,
@@ -95,19 +132,27 @@ def pages(root: Path) -> dict[Path, str]:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    said = (capital, duration, in_words, engine_facts.once, part, per_cent, row)
-    environment.filters |= {function.__name__: function for function in said}
-    asked = (cost_text, engine_facts, facts, meant, scene_facts, table)
-    environment.globals |= {each.__name__.rpartition(".")[2]: each for each in asked}
-    environment.globals |= {
-        "ENGINES": ENGINES,
-        "OUTDATED": OUTDATED,
-        "STEPPED": STEPPED,
-        "WORDS": WORDS,
+    environment.filters |= {
+        each.__name__: each for each in (capital, duration, in_kinds, in_words, part, row)
     }
-    environment.globals |= {"TARGETS": TARGETS, "infinite": math.inf, "verdict": verdict}
-    environment.globals |= {"TROUBLES": TROUBLES, "captions": scenes.STUDY.captions}
+    environment.filters["once"] = facts.once
+    chapters = {
+        title: [in_words_of(one, published) for one in parts if one in known]
+        for title, parts in CHAPTERS.items()
+    }
+    said = {
+        "facts": facts,
+        "table": table,
+        "verdict": SWEEP.finding(SWEEP.read(published / "presets")),
+        "chapters": {title: parts for title, parts in chapters.items() if parts},
+        "made": facts.made(published),
+        "presets": facts.presets(published),
+        "published": published,
+    }
+    environment.globals |= said | {
+        **{"OUTDATED": OUTDATED, "STEPPED": STEPPED, "TROUBLES": TROUBLES},
+        **{"WORDS": WORDS, "MEANINGS": MEANINGS},
+    }
     return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {
-        root / path: environment.get_template(name).render(published=published)
-        for path, name in PAGES.items()
+        root / path: environment.get_template(name).render() for path, name in PAGES.items()
     }

@@ -7,23 +7,25 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from studies.catalogue import CHAPTERS, STUDIES
-from studies.old import app, provenance
-from studies.old.arguments import Place
-from studies.old.journal import FolderError
-from studies.old.study import Chapter, Study
+from studies.kit import app
+from studies.kit.arguments import Place
+from studies.kit.store import FolderError
+from studies.kit.tables import write_text
+from studies.page.chapters import PARTS, Part
 
 PAGE = "report.html"
 
 
 def command(*, out: Place, full: bool = False) -> int:
-    """Run every study and write one page about them.
+    """Run every study and write one self-contained page about them, report.html.
+
+    The quick studies take some six minutes on two cores, the full ones two and a half hours. A
+    report that was interrupted goes on when the same command is given again.
 
     Parameters
     ----------
     out
-        Folder for the results, one inside for each study, and for report.html. What an earlier run
-        finished is not done again.
+        Folder for the results, one inside for each study, and for report.html.
     full
         The full studies, as published, instead of the quick ones.
     """
@@ -31,21 +33,18 @@ def command(*, out: Place, full: bool = False) -> int:
 
     _prepare(out, full)
     codes = []
-    minutes = sum(chapter.minutes[full] for _, chapter in CHAPTERS)
-    form = "{desc} {percentage:3.0f}% [{elapsed}<{remaining}]"
-    with tqdm(total=minutes, disable=None, bar_format=form) as bar:
-        for study, chapter in CHAPTERS:
-            bar.set_description(chapter.folder)
+    with tqdm(PARTS, disable=None, unit="study") as bar:
+        for part in bar:
+            bar.set_description(part.folder)
             if bar.disable:  # no terminal: a line for each, so that a log shows where it is
-                print(f"{chapter.folder} …", file=sys.stderr, flush=True)
-            code = fill(study, chapter, out, full)
+                print(f"{part.folder} …", file=sys.stderr, flush=True)
+            code = fill(part, out, full)
             if code > 1:
                 return code
             codes.append(code)
-            bar.update(chapter.minutes[full])
     write_page(out / PAGE, out, full)
-    for study, chapter in CHAPTERS:
-        print(f"{chapter.folder}: {study.finding(out / chapter.folder)}")
+    for part in PARTS:
+        print(f"{part.folder}: {part.study.finding(part.study.read(out / part.folder))}")
     print(out / PAGE)
     return max(codes)
 
@@ -54,14 +53,14 @@ def _prepare(out: Path, full: bool) -> None:
     path, kind = out / "kind.txt", "full" if full else "quick"
     try:
         out.mkdir(parents=True, exist_ok=True)
-        strange = sorted(each.name for each in out.iterdir() if each.name != f".part.{path.name}")
+        strange = sorted(each.name for each in out.iterdir() if not each.name.startswith("."))
         if strange and not path.is_file():
             problem = f"it must be new or empty, or hold a report, and it holds {strange[0]!r}"
             raise FolderError(out, problem)
         held = path.read_text(errors="replace").strip() if path.is_file() else kind
         if held != kind:
             raise FolderError(out, f"it holds a {held} report; a {kind} one needs another folder")
-        provenance.write_text(path, kind + "\n")
+        write_text(path, kind + "\n")
     except (FileExistsError, NotADirectoryError) as error:
         raise FolderError(out, "it must be a folder, not a file") from error
     except OSError as error:
@@ -69,10 +68,10 @@ def _prepare(out: Path, full: bool) -> None:
         raise FolderError(out, problem) from error
 
 
-def fill(study: Study, chapter: Chapter, out: Path, full: bool) -> int:
-    """Run a chapter's study, without its words; return its exit code."""
+def fill(part: Part, out: Path, full: bool) -> int:
+    """Run the command of a part, without its words; return its exit code."""
     with contextlib.redirect_stdout(io.StringIO()):
-        code = app.run(STUDIES, study.command_line(chapter, out / chapter.folder, full))
+        code = app.run({part.name: ""}, part.words(out / part.folder, full))
     if code == 1:
-        print(f"{chapter.folder}: some rows failed; the page names them", file=sys.stderr)
+        print(f"{part.folder}: some rows failed; the page names them", file=sys.stderr)
     return code

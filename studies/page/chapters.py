@@ -1,0 +1,143 @@
+"""The chapters of a page, and the commands that fill their folders."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+if TYPE_CHECKING:
+    from studies.kit.study import Study
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """A folder of results, and the command that fills it.
+
+    Attributes
+    ----------
+    folder, name : str
+        Of the folder, and of the command.
+    title : str
+        What it answers, where one study fills several folders.
+    quick, full : tuple of str
+        Further arguments of the command.
+    weaker : str
+        What the quick form lacks.
+    """
+
+    folder: str
+    name: str
+    title: str = ""
+    quick: tuple[str, ...] = ("--quick",)
+    full: tuple[str, ...] = ()
+    weaker: str = ""
+
+    @cached_property
+    def study(self) -> Study:
+        """The study whose command it is."""
+        study: Study = import_module(f"studies.{self.name}").STUDY
+        return study
+
+    @property
+    def question(self) -> str:
+        """What it answers."""
+        return self.title or self.study.question
+
+    def words(self, out: Path | str, full: bool) -> list[str]:
+        """Return the command line after `rocking`."""
+        return [self.name, "--out", str(out), *(self.full if full else self.quick)]
+
+
+def statements(tables: Mapping[str, pd.DataFrame]) -> list[tuple[bool, str]]:
+    """Return whether each statement that a study tested holds, and for which sources."""
+    found: dict[tuple[bool, str], list[str]] = {}
+    for line in tables.get("findings", pd.DataFrame()).to_dict("records"):
+        if str(line["holds"]) in ("True", "False"):
+            key = str(line["holds"]) == "True", str(line["statement"])
+            found.setdefault(key, []).append(str(line.get("source", "")))
+    return [
+        (holds, f"{words} ({', '.join(names)})" if all(names) else words)
+        for (holds, words), names in found.items()
+    ]
+
+
+CHAPTERS: dict[str, tuple[Part, ...]] = {
+    "The paper's cases": (
+        Part(
+            folder="sweep",
+            name="sweep",
+            quick=("--accuracy", "loose"),
+            weaker="The engines step at the accuracy loose instead of standard.",
+        ),
+        Part(
+            folder="presets",
+            name="sweep",
+            title="Do engines predict them with their default settings, and with tuned ones?",
+            quick=("--figure", "8", "--sources", "exact", "core:naive"),
+            full=(
+                *("--sources", "exact", "engines:naive", "engines:naive-base-at-rest"),
+                *("engines:recommended", "engines:fixed", "engines"),
+            ),
+            weaker="Figure 8 stands for all four; no tuned preset with a fixed step is asked.",
+        ),
+    ),
+    "The paper's histories and linearizations": (
+        Part(folder="histories", name="histories", quick=()),
+        Part(folder="linearizations", name="linearizations"),
+    ),
+    "Random cases": (
+        Part(folder="validate", name="validate"),
+        Part(
+            folder="estimate",
+            name="validate",
+            title="How far off is a peak where there is no exact solution?",
+            full=("--halves",),
+            quick=("--halves", "--quick"),
+        ),
+        Part(
+            folder="steps",
+            name="validate",
+            title="Do the steps that keep an error keep it in random cases?",
+            full=("--steps",),
+            quick=("--steps", "--quick"),
+        ),
+    ),
+    "Error against run time": (
+        Part(folder="precision", name="precision"),
+        Part(folder="advice", name="advise", quick=()),
+    ),
+    "Contact models": (
+        Part(folder="contact", name="contact"),
+        Part(
+            folder="contact-frames",
+            name="contact",
+            title="What does each setting cost and buy on frames?",
+            quick=("--scene", "frame", "--quick"),
+            full=("--scene", "frame"),
+        ),
+        Part(folder="restitution", name="restitution"),
+        Part(
+            folder="symptoms",
+            name="advise",
+            title="Which setting mends what users of an engine see?",
+            quick=("--symptoms",),
+            full=("--symptoms",),
+        ),
+    ),
+    "Stiff and extreme cases": (Part(folder="stability", name="stability"),),
+    "Overturning": (Part(folder="overturning", name="overturning"),),
+    "Other scenes": (Part(folder="scenes", name="scenes"),),
+}
+"""Title of a chapter -> its parts."""
+PARTS = tuple(part for parts in CHAPTERS.values() for part in parts)
+
+
+def published_parts(published: Path) -> list[Part]:
+    """Return the parts that have published results."""
+    return [part for part in PARTS if (published / part.folder / "provenance.json").is_file()]
