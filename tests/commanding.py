@@ -33,15 +33,6 @@ def refused(capsys, arguments, *parts):
     return line
 
 
-def redrawn(name, folder):
-    """Draw a study's pictures from the tables of its folder alone; return the files."""
-    from studies.catalogue import STUDIES
-    from studies.drawing.figures import save_all
-
-    (study,) = (study for study in STUDIES if study.name == name)
-    return save_all(study.pictures(folder), folder)
-
-
 def compared(capsys, *options):
     """Run a comparison; return its exit code, and its rows as it tells them in JSON, by source."""
     capsys.readouterr()
@@ -71,19 +62,6 @@ def python(*arguments, before=None, path=(), **options):
         timeout=PATIENCE_S,
         **options,
     )
-
-
-HEAD = 2
-"""Lines of a journal before its rows, where one source made them all."""
-
-
-def wait_for_rows(folder, process, count):
-    """Wait until the journal of a run in another process holds so many rows."""
-    journal, deadline = folder / "journal.jsonl", time.monotonic() + PATIENCE_S
-    while not journal.exists() or len(journal.read_bytes().splitlines()) < HEAD + count:
-        assert process.poll() is None, process.stderr and process.stderr.read()
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
 
 
 ALONE = """

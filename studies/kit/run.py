@@ -1,5 +1,6 @@
 """Jobs side by side: measured where they may fail, kept in a store, counted by a bar."""
 
+import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -30,6 +31,8 @@ FEW = 32
 """Jobs up to which to interpret takes less time than to load what is compiled."""
 COMPILING_S = 1800.0
 """Nothing takes longer to compile [s]."""
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""Signals that end a run."""
 LABELS = (
     *("name", "record", "scale"),
     *("figure", "panel", "case", "aspect", "width_m", "omega_over_p"),
@@ -82,7 +85,9 @@ def local(
         if many and job.source not in loaded:
             loaded.add(job.source)
             ask(job)  # to load what is compiled is no part of the first case's run time
-        yield number, measure(job)
+        with undisturbed():
+            row = measure(job)
+        yield number, row
     if not apart:
         return
     if many:
@@ -93,6 +98,16 @@ def local(
         if isinstance(row, Lost):
             row = lost_row(measure, jobs[number], _response_of(row))
         yield number, row
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Let signals wait: one that comes while compiled code is called makes it crash."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 _loaded = set[str]()

@@ -84,7 +84,7 @@ class _Worker:
     def __init__(self) -> None:
         context = get_context("spawn")  # engines hold state of their own, which no fork may share
         self.channel, theirs = context.Pipe()
-        self.process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        self.process = context.Process(target=_serve, args=(theirs,))
         before = signal.pthread_sigmask(signal.SIG_BLOCK, TERMINAL)
         try:
             self.process.start()

@@ -278,4 +278,6 @@ def _better(lines: pd.DataFrame, engine: str, plain: Line) -> list[dict[Any, Any
         & (varied["median_error"] < plain["median_error"])
     ].sort_values("median_error")
     alike = better["median_error"].map("{:.3e}".format)  # two names of one thing
-    return better[~alike.duplicated() & ~better["factor"].duplicated()].head(TRIED).to_dict("records")
+    return (
+        better[~alike.duplicated() & ~better["factor"].duplicated()].head(TRIED).to_dict("records")
+    )

@@ -1,0 +1,251 @@
+"""A results folder: what it keeps, what it computes again, and what it refuses."""
+
+import dataclasses
+import json
+import resource
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from functools import partial
+
+import pandas as pd
+import pytest
+from commanding import ROOT, python, refused
+from given import BLOCK, FULL_SINE
+
+from analytic.response import Response
+from studies import sweep
+from studies.__main__ import run as command
+from studies.kit import identity, run, store
+from studies.kit.identity import changed, maker_of
+from studies.kit.jobs import Job, Question, answer
+from studies.kit.store import FolderError, Store
+from studies.kit.tables import quoted, read_table, unquoted, write_table
+from studies.sources.registry import SOURCES, Source, resolve
+
+CASE = Question(system=BLOCK, motion=FULL_SINE)
+JOBS = [
+    Job(labels={"case": n}, case=CASE, source=name) for n in (1, 2) for name in ("exact", "rk4")
+]
+
+
+def filled(folder, jobs=JOBS, measure=answer, also=(), table=""):
+    """Run jobs into a folder; return the rows, and how many were computed."""
+    with Store(folder, "sweep", table) as kept:
+        rows = run.run(jobs, measure, store=kept, also=also)
+        makers = run.makers_of(jobs, measure)
+        kept.finish({"sweep": pd.DataFrame(rows)}, makers, len(rows))
+    return rows, json.loads((folder / "provenance.json").read_text())["runs"][-1]["computed"]
+
+
+def test_a_finished_folder_computes_nothing_and_a_new_job_alone(tmp_path):
+    rows, computed = filled(tmp_path, JOBS[:2])
+    assert computed == 2
+    again, computed = filled(tmp_path, JOBS)
+    assert (again[:2], computed) == (rows, 2)
+    assert filled(tmp_path)[1] == 0
+
+
+def test_equal_jobs_share_a_row_and_labels_tell_them_apart():
+    assert len({job.key for job in JOBS}) == 4
+    assert dataclasses.replace(JOBS[0]).key == JOBS[0].key
+    assert dataclasses.replace(JOBS[1], options={"step": 1e-4}).key != JOBS[1].key
+
+
+def test_a_failure_is_tried_again(tmp_path, monkeypatch):
+    answers = iter([Response.failure("the disk burns"), Response.failure("and again")])
+    source = Source("model", lambda *_, **__: next(answers))
+    monkeypatch.setitem(SOURCES, "never", source)
+    jobs = [dataclasses.replace(JOBS[0], source="never")]
+    assert filled(tmp_path, jobs)[0][0]["message"] == "the disk burns"
+    assert filled(tmp_path, jobs)[0][0]["message"] == "and again"
+
+
+def test_other_code_and_other_versions_make_rows_old(tmp_path, monkeypatch, capsys):
+    filled(tmp_path)
+    made = identity.version_of
+    monkeypatch.setattr(identity, "version_of", lambda name: made(name) + "1" * (name == "numpy"))
+    maker_of.cache_clear()
+    try:
+        assert filled(tmp_path)[1] == 4
+    finally:
+        maker_of.cache_clear()
+    assert "computed again: exact: 2 rows made with numpy" in capsys.readouterr().err
+
+
+def test_what_is_not_installed_here_makes_nothing_old():
+    assert changed({"box2d": "2.3.10"}, {"box2d": identity.NOT_INSTALLED}) == []
+    assert changed({"box2d": "2.3.10"}, {"box2d": "2.3.11"}) == ["box2d"]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "same"),
+    [
+        ("x = 1\n", "'''Words.'''\nx = 1  # one\n", True),
+        ("def f():\n    return 1\n", "def f():\n    '''One.'''\n    return 1\n", True),
+        ("x = 1\n", "x = 2\n", False),
+    ],
+)
+def test_words_make_no_row_old_and_code_does(before, after, same, tmp_path):
+    digests = []
+    for number, text in enumerate((before, after)):
+        path = tmp_path / str(number) / "a.py"
+        path.parent.mkdir()
+        path.write_text(text)
+        digests.append(identity.code_in(path))
+    assert (digests[0] == digests[1]) is same
+
+
+def test_an_engine_depends_on_its_own_files_and_a_model_on_none():
+    exact, bullet, mujoco = (maker_of(resolve(n), answer) for n in ("exact", "pybullet", "mujoco"))
+    assert not [name for name in exact if "code of" in name or name == "engines"]
+    assert bullet["code of pybullet"] != mujoco["code of mujoco"]
+    assert "code of mujoco" not in bullet
+    assert bullet["engines"] == mujoco["engines"]
+
+
+def test_a_measure_of_a_study_depends_on_the_files_that_it_imports():
+    files = {path.relative_to(ROOT).as_posix() for path in identity.files_of("studies.sweep")}
+    assert {"studies/sweep.py", "studies/cases/paper.py", "studies/measures/claims.py"} <= files
+    assert not [path for path in files if path.startswith(("studies/kit", "studies/drawing"))]
+    assert (
+        maker_of(resolve("exact"), sweep.jobs)["studies"]
+        != maker_of(resolve("exact"), answer)["studies"]
+    )
+
+
+def test_rows_that_are_not_asked_for_are_refused(tmp_path):
+    filled(tmp_path)
+    with pytest.raises(FolderError, match="holds results of case 2, which must be named"):
+        filled(tmp_path, JOBS[:2])
+    with pytest.raises(FolderError, match="holds results of source rk4"):
+        filled(tmp_path, JOBS[::2])
+    finer = [dataclasses.replace(job, options={"step": 1e-4}) for job in JOBS[1::2]]
+    with pytest.raises(FolderError, match="other settings"):
+        filled(tmp_path, [*JOBS[::2], *finer])
+
+
+def test_a_folder_of_another_kind_is_refused(tmp_path, capsys):
+    (tmp_path / "mine.csv").write_text("a\n1\n")
+    with pytest.raises(FolderError, match="must be new or empty"):
+        filled(tmp_path)
+    other = tmp_path / "other"
+    with Store(other, "contact"):
+        pass
+    with pytest.raises(FolderError, match="results of contact"):
+        filled(other)
+    (tmp_path / "file").touch()
+    refused(capsys, ["sweep", "--out", tmp_path / "file"], "--out is ", "folder")
+    refused(capsys, ["sweep", "--out", "/proc/x"], "--out is '/proc/x'; ")
+
+
+def test_a_second_run_at_the_same_time_is_refused(tmp_path):
+    with Store(tmp_path, "sweep"), pytest.raises(FolderError, match="in use by another run"):
+        Store(tmp_path, "sweep")
+    Store(tmp_path, "sweep")
+
+
+def test_a_damaged_store_is_refused(tmp_path):
+    filled(tmp_path)
+    (tmp_path / store.ROWS).write_bytes(b"no database at all, but long enough to be read" * 99)
+    with pytest.raises(FolderError, match="rows.sqlite"):
+        filled(tmp_path)
+    (tmp_path / store.ROWS).unlink()
+    filled(tmp_path / "b")
+    base = sqlite3.connect(tmp_path / "b" / store.ROWS)
+    base.execute("UPDATE rows SET row = '{'")
+    base.commit()
+    base.close()
+    with pytest.raises(FolderError, match="damaged"):
+        filled(tmp_path / "b")
+
+
+def test_a_folder_without_a_store_goes_on_from_its_table(tmp_path):
+    rows, _ = filled(tmp_path, table="sweep")
+    (tmp_path / store.ROWS).unlink()
+    again, computed = filled(tmp_path, table="sweep")
+    assert (again, computed) == (rows, 0)
+    (tmp_path / store.ROWS).unlink()
+    with pytest.raises(FolderError, match="case 2"):
+        filled(tmp_path, JOBS[:2], table="sweep")
+
+
+def test_rows_of_another_folder_are_taken_over(tmp_path):
+    rows, _ = filled(tmp_path / "there", JOBS[:3])
+    mine, computed = filled(tmp_path / "here", JOBS, also=[tmp_path / "there"])
+    assert (mine[:3], computed) == (rows, 1)
+    taken = json.loads((tmp_path / "here" / "provenance.json").read_text())["runs"][0]["also"]
+    assert [each["rows"] for each in taken] == [3]
+    with pytest.raises(FolderError, match="--also is .* must be a results folder"):
+        filled(tmp_path / "c", also=[tmp_path])
+    with pytest.raises(FolderError, match="no row of what is asked"):
+        filled(tmp_path / "d", JOBS[3:], also=[tmp_path / "there"])
+
+
+def test_a_table_that_was_edited_is_no_longer_published(tmp_path):
+    filled(tmp_path)
+    store.check(tmp_path, ["sweep.csv", "missing.csv"], "--published")
+    (tmp_path / "sweep.csv").write_text("edited")
+    with pytest.raises(FolderError, match=r"its sweep\.csv is not what its provenance"):
+        store.check(tmp_path, ["sweep.csv"], "--published")
+
+
+def test_tables_come_back_to_the_bit(tmp_path):
+    table = pd.DataFrame(
+        {"word": ["=1+1", "", "-3", "'=x"], "x": [0.1 + 0.2, float("nan"), float("inf"), -0.0]}
+    )
+    write_table(tmp_path / "t.csv", table)
+    assert "'=1+1" in (tmp_path / "t.csv").read_text()
+    pd.testing.assert_frame_equal(read_table(tmp_path / "t.csv", "word"), table, check_exact=True)
+    assert [unquoted(quoted(word)) for word in table["word"]] == list(table["word"])
+
+
+SWEEP = ("-m", "studies", "sweep", "--figure", "6", "--sources", "exact", "mujoco")
+
+
+def waiting(folder, count, *arguments):
+    """Start a sweep; return its process once it has stored so many rows."""
+    process = subprocess.Popen([sys.executable, *arguments, "--out", str(folder)], cwd=ROOT)
+    while not (folder / store.ROWS).exists() or stored(folder) < count:
+        assert process.poll() is None
+        time.sleep(0.02)
+    return process
+
+
+def stored(folder):
+    return (
+        (folder / f"{store.ROWS}-wal").stat().st_size // 5000 if list(folder.glob("*-wal")) else 0
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.processes
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+def test_a_run_that_is_ended_goes_on_with_equal_rows(number, tmp_path):
+    whole, halved = tmp_path / "whole", tmp_path / "halved"
+    assert python(*SWEEP, "--out", whole).returncode == 0
+    process = waiting(halved, 20, *SWEEP)
+    process.send_signal(number)
+    began = time.monotonic()
+    assert process.wait(60.0) == (-number if number == signal.SIGKILL else 128 + number)
+    assert number == signal.SIGKILL or time.monotonic() - began < 5.0
+    assert python(*SWEEP, "--out", halved).returncode == 0
+    last = json.loads((halved / "provenance.json").read_text())["runs"][-1]
+    assert 0 < last["computed"] < last["rows"] == 480
+    pd.testing.assert_frame_equal(
+        *(pd.read_csv(f / "sweep.csv").drop(columns="wall_s") for f in (whole, halved)),
+        check_exact=True,
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.processes
+def test_a_full_disk_is_a_line_and_loses_no_row(tmp_path):
+    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (100_000, 100_000))
+    done = python(*SWEEP[:-1], "--out", tmp_path / "out", before=limit)
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert "rows are kept" in line and "cannot be written" in line
+    assert command([*SWEEP[2:-1], "--out", str(tmp_path / "out")]) == 0

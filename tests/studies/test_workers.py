@@ -1,0 +1,127 @@
+"""Processes that run jobs: whatever an engine does in one, its row says so and the run goes on."""
+
+import math
+import os
+import threading
+import time
+
+import hostile
+import pytest
+from given import BLOCK, FULL_SINE
+
+from analytic import SinePulse
+from engines import registry
+from engines.declaration import Stepping
+from engines.run.drive import simulate_world
+from engines.scene import Scene
+from studies.kit.jobs import Job, Question, answer
+from studies.kit.run import local
+from studies.kit.workers import Lost, answers
+from studies.sources.registry import SOURCES, Source, announce
+
+pytestmark = pytest.mark.processes
+
+PULSE = SinePulse(amplitude=6.0, omega=6.0)
+SAID = {name: said for name, (*_, said) in {**hostile.IN_A_STEP, **hostile.OTHERWISE}.items()}
+LIMIT_S = 3.0
+
+
+@pytest.fixture(scope="module")
+def rows(tmp_path_factory):
+    """Return the row of each hostile world, all of them run in the same two processes."""
+    note = tmp_path_factory.mktemp("hostile") / "note"
+    kept = dict(SOURCES)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(hostile.NOTE, str(note))
+        patch.setenv(registry.FURTHER, "")
+        for world in SAID:
+            announce(f"hostile:{world}", lambda place: place.rpartition(":")[2])
+        case = Question(system=BLOCK, motion=PULSE)
+        jobs = [Job(labels={}, case=case, source=world) for world in SAID]
+        found = dict(local(jobs, answer, 2, LIMIT_S, at_once=True))
+    registry._places.cache_clear()
+    registry._declared.cache_clear()
+    SOURCES.clear()
+    SOURCES.update(kept)
+    return {job.source: found[number] for number, job in enumerate(jobs)}, note
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("world", SAID)
+def test_whatever_an_engine_does_is_a_row(world, rows):
+    row = rows[0][world]
+    assert len(row["message"].splitlines()) <= 1 and len(row["message"]) <= 1000
+    if SAID[world]:
+        assert row["outcome"] == "failed"
+        assert row["message"].startswith(SAID[world])
+    else:
+        assert (row["outcome"], row["message"]) == ("at rest", "")
+        assert math.isfinite(row["wall_s"])
+
+
+@pytest.mark.slow
+def test_what_an_engine_started_in_its_group_is_ended_with_its_process(rows):
+    pids = [int(pid) for pid in rows[1].read_text().split()]
+    time.sleep(0.5)
+    left = [pid for pid in pids if os.path.exists(f"/proc/{pid}")]  # noqa: PTH110
+    # who leaves the session of its process lives on: two of the worlds let a child do so
+    assert len(left) <= 2 < len(pids)
+    for pid in left:
+        os.kill(pid, 9)
+
+
+def doubles(value):
+    return 2 * value
+
+
+def dies_soon():
+    threading.Timer(0.2, os._exit, [3]).start()
+    return os.getpid()
+
+
+def sleeps():
+    time.sleep(60.0)
+
+
+def test_every_task_has_its_answer():
+    assert sorted(answers(doubles, [(n,) for n in range(5)], 2, 60.0)) == [
+        (n, 2 * n) for n in range(5)
+    ]
+
+
+def test_a_process_that_ended_between_two_tasks_is_replaced():
+    first = next(answers(dies_soon, [()], 1, 60.0))[1]
+    assert first != os.getpid()
+    found = dict(answers(doubles, [(1,), ("x" * 10,), (None,)], 1, 60.0))
+    assert found[0] == 2
+    assert found[2] == Lost("TypeError: unsupported operand type(s) for *: 'int' and 'NoneType'")
+
+
+def test_a_task_that_takes_too_long_is_given_up():
+    began = time.monotonic()
+    ((_, lost),) = answers(sleeps, [()], 1, 0.2)
+    assert lost == Lost("no result within the time limit of 0.2 s", late=True)
+    assert time.monotonic() - began < 30.0
+
+
+def test_a_long_solve_has_a_time_limit_too():
+    long = SinePulse(amplitude=0.34 * 9.81, omega=100.0, half_cycles=10**9)
+    job = Job(labels={}, case=Question(system=BLOCK, motion=long), source="rk4")
+    assert job.needs_process
+    ((_, row),) = local([job], answer, 1, 0.5)
+    assert (row["outcome"], "time limit" in row["message"]) == ("failed", True)
+
+
+def test_a_short_solve_stays_in_this_process(monkeypatch):
+    monkeypatch.setitem(SOURCES, "here", Source("model", lambda *_, **__: 1 / 0))
+    case = Question(system=BLOCK, motion=FULL_SINE)
+    ((_, row),) = local([Job(labels={}, case=case, source="here")], answer, 1, 60.0, at_once=True)
+    assert row["message"].startswith("ZeroDivisionError")
+
+
+def test_an_engine_that_goes_back_in_time_is_refused():
+    does = {"advance": lambda *_: -1, "stepping": Stepping.OWN}
+    scene = Scene(system=BLOCK, motion=PULSE)
+    world = type("GoesBack", (hostile.Calm,), does)(scene, None, 1e-3)
+    with pytest.raises(ValueError, match="it took -1 steps"):
+        simulate_world(world, scene, 1e-3, Stepping.OWN)
