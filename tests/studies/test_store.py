@@ -150,7 +150,7 @@ def test_a_second_run_at_the_same_time_is_refused(tmp_path):
 def test_a_damaged_store_is_refused(tmp_path):
     filled(tmp_path)
     (tmp_path / store.ROWS).write_bytes(b"no database at all, but long enough to be read" * 99)
-    with pytest.raises(FolderError, match="rows.sqlite"):
+    with pytest.raises(FolderError, match=r"rows\.sqlite"):
         filled(tmp_path)
     (tmp_path / store.ROWS).unlink()
     filled(tmp_path / "b")
@@ -178,7 +178,7 @@ def test_rows_of_another_folder_are_taken_over(tmp_path):
     assert (mine[:3], computed) == (rows, 1)
     taken = json.loads((tmp_path / "here" / "provenance.json").read_text())["runs"][0]["also"]
     assert [each["rows"] for each in taken] == [3]
-    with pytest.raises(FolderError, match="--also is .* must be a results folder"):
+    with pytest.raises(FolderError, match=r"--also is .* must be a results folder"):
         filled(tmp_path / "c", also=[tmp_path])
     with pytest.raises(FolderError, match="no row of what is asked"):
         filled(tmp_path / "d", JOBS[3:], also=[tmp_path / "there"])
