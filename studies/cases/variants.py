@@ -39,7 +39,7 @@ class Variant:
 
     engine: str
     preset: str
-    factor: str
+    factor: str = ""
     level: str
     settings: Mapping[str, Any] = field(default_factory=dict)
     scene: Mapping[str, Any] = field(default_factory=dict)
@@ -47,7 +47,7 @@ class Variant:
 
     @property
     def source(self) -> str:
-        """Who is asked: the engine's preset."""
+        """The engine's preset."""
         return f"{self.engine}:{self.preset}"
 
     @property
@@ -59,80 +59,49 @@ class Variant:
 def variants(engine: str) -> Iterator[Variant]:
     """Yield every way to set an engine, each preset as it is before what differs from it."""
     declared = ENGINES[engine]
-    presets = {preset.name: preset.title for preset in declared.presets}
-    for name in [name for name in presets if name not in (*BOTH, AT_REST)]:
-        yield Variant(engine=engine, preset=name, factor="", level=presets[name])
-        yield from _left_out(engine, name)
-    for name in [name for name in BOTH if name in presets]:
-        yield Variant(engine=engine, preset=name, factor="", level=presets[name])
+    plain = {
+        use.name: Variant(engine=engine, preset=use.name, level=use.title)
+        for use in declared.presets
+    }
+    for name in [name for name in plain if name not in (*BOTH, AT_REST)]:
+        yield plain[name]
+        for help_, settings in declared.preset(name).helped_by.items():
+            if settings is not None:
+                level = help_.name.lower()
+                yield replace(plain[name], factor=LEFT_OUT, level=level, settings=settings)
+    for name in [name for name in BOTH if name in plain]:
+        yield plain[name]
         if name == DEFAULT:
-            own = Variant(engine=engine, preset=name, factor=OWN_STEPS, level=OWN_STEP)
+            own = replace(plain[name], factor=OWN_STEPS, level=OWN_STEP)
             yield own
             if declared.preset(name).frame == "world":
                 yield replace(own, level=STILL, scene={"frame": "base"})
-        for factor_ in declared.factors:
-            if set(BOTH) <= presets.keys():
-                yield from _exchanged(engine, name, factor_)
-            yield from _levels(engine, name, factor_)
+        for factor in declared.factors:
+            if set(BOTH) <= plain.keys():
+                yield from _exchanged(plain[name], factor)
+            for item in factor.levels:
+                if name in item.presets:
+                    yield replace(
+                        plain[name],
+                        factor=factor.name,
+                        level=item.name,
+                        settings=item.settings,
+                        scene=item.scene,
+                        trap=item.trap,
+                    )
 
 
 def preset_values(engine: str, preset: str, names: Sequence[str]) -> dict[str, Any]:
-    """Return what a preset of an engine sets the named settings to.
-
-    Parameters
-    ----------
-    engine, preset : str
-    names : sequence of str
-        Fields of the engine's settings, as `Factor.settings` names them.
-
-    Returns
-    -------
-    dict
-        Name -> value, in the unit of that setting.
-
-    Raises
-    ------
-    AttributeError
-        If the engine has no such setting.
-    """
+    """Return what a preset of an engine sets the named fields of its settings to."""
     chosen = ENGINES[engine].preset(preset).settings
     return {name: getattr(chosen, name) for name in names}
 
 
-def _exchanged(engine: str, preset: str, factor: Factor) -> Iterator[Variant]:
-    other = DEFAULT if preset == BEST else BEST
-    wanted = preset_values(engine, other, factor.settings)
-    if wanted == preset_values(engine, preset, factor.settings):
-        return
-    if preset == DEFAULT or factor.by_default:
-        yield Variant(
-            engine=engine,
-            preset=preset,
-            factor=factor.name,
-            level=AS_BEST if preset == DEFAULT else BY_DEFAULT,
-            settings=wanted,
-            trap=factor.traps.get(preset, ""),
-        )
-
-
-def _left_out(engine: str, preset: str) -> Iterator[Variant]:
-    for help_, settings in ENGINES[engine].preset(preset).helped_by.items():
-        if settings is not None:
-            level = help_.name.lower()
-            yield Variant(
-                engine=engine, preset=preset, factor=LEFT_OUT, level=level, settings=settings
-            )
-
-
-def _levels(engine: str, preset: str, factor: Factor) -> Iterator[Variant]:
-    for item in factor.levels:
-        if preset in item.presets:
-            yield Variant(
-                engine=engine,
-                preset=preset,
-                factor=factor.name,
-                level=item.name,
-                settings=item.settings,
-                scene=item.scene,
-                trap=item.trap,
-            )
+def _exchanged(plain: Variant, factor: Factor) -> Iterator[Variant]:
+    """Yield one of the two presets with the other's values of a factor, where these differ."""
+    naive = plain.preset == DEFAULT
+    wanted = preset_values(plain.engine, BEST if naive else DEFAULT, factor.settings)
+    own = preset_values(plain.engine, plain.preset, factor.settings)
+    if wanted != own and (naive or factor.by_default):
+        level, trap = AS_BEST if naive else BY_DEFAULT, factor.traps.get(plain.preset, "")
+        yield replace(plain, factor=factor.name, level=level, settings=wanted, trap=trap)

@@ -5,16 +5,15 @@ import math
 
 import numpy as np
 
-from analytic.block import RigidBlock
+from analytic.block import Rocker
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Outcome, Response
-from studies.old.jobs import Job
 
 SAMPLES = 400
 """Samples of a history from which energies are read."""
 
 
-def energy(block: RigidBlock, history: History) -> FloatArray:
+def energy(block: Rocker, history: History) -> FloatArray:
     """Return the exact model's energy of each sample, over m g R."""
     y = np.abs(history.theta)
     kinetic = 0.5 * (history.velocity / block.p) ** 2
@@ -27,7 +26,7 @@ NEAR = 0.15
 
 
 def flights(
-    block: RigidBlock, motion: Motion, response: Response, near: float = 0.0
+    block: Rocker, motion: Motion, response: Response, near: float = 0.0
 ) -> list[FloatArray]:
     """Return the energies of the samples between two impacts, after the ground motion.
 
@@ -50,7 +49,7 @@ def flights(
     return result
 
 
-def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
+def growth(block: Rocker, motion: Motion, response: Response) -> float:
     """Return the largest rise of energy during free rocking over its largest value.
 
     The energy is the exact model's (`energy`). A rise is counted from the least energy before it,
@@ -58,7 +57,7 @@ def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
 
     Parameters
     ----------
-    block : RigidBlock
+    block : Rocker
     motion : Motion
         After its end the block rocks freely.
     response : Response
@@ -78,15 +77,13 @@ def growth(block: RigidBlock, motion: Motion, response: Response) -> float:
     return rise / float(energies.max()) if rise > 0.0 else 0.0
 
 
-def energy_drift(job: Job, response: Response) -> float:
+def energy_drift(block: Rocker, motion: Motion, response: Response) -> float:
     """Return how much the energy of free rocking varies between two impacts.
 
     Parameters
     ----------
-    job : Job
-        Of a block; after its motion it rocks freely.
-    response : Response
-        With a history that goes on after the motion.
+    block, motion, response
+        As for `growth`.
 
     Returns
     -------
@@ -96,5 +93,5 @@ def energy_drift(job: Job, response: Response) -> float:
     """
     if response.outcome is not Outcome.ROCKED:
         return math.nan
-    drifts = (float(np.ptp(e) / e[-1]) for e in flights(job.block, job.motion, response))
+    drifts = (float(np.ptp(e) / e[-1]) for e in flights(block, motion, response))
     return max(drifts, default=math.nan)

@@ -15,13 +15,13 @@ import pandas as pd
 from analytic.response import Outcome, Response
 from studies.cases.paper import free_rocking_window
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+from studies.measures.energy import SAMPLES, energy_drift
 from studies.old.arguments import Out, TimeLimit
 from studies.old.jobs import Job, ask, summary
 from studies.old.journal import Row
 from studies.old.naming import CORE, Engines
 from studies.old.options import Running
 from studies.old.plan import Plan, Tables, carry_out
-from studies.measures.energy import SAMPLES, energy_drift
 from studies.precision import STUDY, cost
 from studies.precision.methods import Method, methods_of
 from studies.precision.repeats import Timed, best_of
@@ -145,5 +145,5 @@ def reduce(job: Job, response: Response) -> Row:
         "setup_s": round(response.setup_s, 9),
         "runs": response.runs if isinstance(response, Timed) else 0,
         "impact_times": json.dumps(times),
-        "energy_drift": energy_drift(job, response),
+        "energy_drift": energy_drift(job.block, job.motion, response),
     }

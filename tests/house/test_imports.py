@@ -98,7 +98,7 @@ FORBIDDEN = {
         "import analytic.block",
     ),
     "the floors of studies, and studies that do not know one another": (
-        "studies/contact/study.py",
+        "studies/contact.py",
         "import studies.validity.report",
     ),
     "no study opens an engine's folder": (

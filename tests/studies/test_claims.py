@@ -9,8 +9,6 @@ import pytest
 from analytic.response import Outcome
 from studies.cases.drawn import LEAST_NORMAL, everything
 from studies.cases.window import Window
-from studies.contact import study as contact
-from studies.contact.study import recommendation
 from studies.overturning import report as overturning
 from studies.overturning.report import with_verdicts
 from studies.precision import report as precision
@@ -74,47 +72,6 @@ def test_a_lucky_setting_is_not_the_cheapest():
     assert cheapest_below(pd.DataFrame(lines), 5e-3)["value"] == 2e-3
     assert cheapest_below(pd.DataFrame(lines), 1.5e-3)["value"] == 1e-3
     assert cheapest_below(pd.DataFrame(lines), 5e-4) is None
-
-
-def variant(preset, factor, level, moved, largest, *, wrong=0, turned=0.0, trap=""):
-    return {
-        "engine": "mujoco",
-        "preset": preset,
-        "factor": factor,
-        "level": level,
-        "trap": trap,
-        "cases": 12,
-        "failed": 0,
-        "wrong": wrong,
-        "max_error": largest,
-        "moved": moved,
-        "ratio_moved": turned,
-        "message": "",
-        "worse": wrong > 0,
-    }
-
-
-def contact_table():
-    return pd.DataFrame(
-        [
-            variant("landing", "", "steps that land on impacts", 0.0, 5e-6),
-            variant("fixed", "", "best at a fixed step", 0.0, 1.3e-2),
-            variant("fixed", "inertia", "default", 1.09, 0.71, wrong=5),
-            variant("fixed", "geometry", "default", 0.14, 1.3e-2, turned=0.07),
-            variant("fixed", "solver tolerance", "default", 1e-9, 1.3e-2),
-            variant("naive", "", "the library's defaults", 0.0, 2.8e-2),
-            variant("naive", "solver tolerance", "as in the best", 2.6e-2, 2.8e-2, turned=0.046),
-        ]
-    )
-
-
-def test_what_moves_a_peak_is_not_what_errs():
-    lines = contact_table()
-    table = recommendation(lines, "mujoco")
-    # at its default the solver tolerance moves no peak of the tuned preset
-    assert list(table["moved"]) == [1e-9]
-    assert list(table["max_error"]) == [1.3e-2] and list(table["max_error_alone"]) == [2.8e-2]
-    assert "inertia in mujoco (71 %)" in contact.finding(lines)
 
 
 def extreme(source, verdict, outcome="rocked", peak=0.5):

@@ -12,7 +12,7 @@ from matplotlib.text import Text
 from engines import ENGINES
 from studies import contact
 from studies.catalogue import STUDIES
-from studies.contact.figure import MATTER, draw_contact
+from studies.drawing.contact import MATTER, draw_contact
 from studies.drawing.figures import lay_out
 from studies.drawing.labels import Name, around, spread
 from studies.drawing.styles import (
@@ -106,7 +106,7 @@ def test_no_engine_takes_the_look_of_another():
 @pytest.mark.parametrize("preset", ["gentle", "error-controlled"])
 def test_a_preset_of_another_engine_is_told_of_by_its_name_or_its_look(preset):
     """One that the project does not know is grey, and called what its package calls it."""
-    lines = contact.STUDY.read(PUBLISHED / "contact", "variants")
+    lines = contact.STUDY.read(PUBLISHED / "contact")["variants"]
     drawn = draw_contact(lines[lines["engine"] == "dart"].replace({"preset": {"landing": preset}}))
     words = [text.get_text() for text in drawn.legends[0].get_texts()]
     asked = (preset, "fixed", "recommended", "naive")
@@ -151,7 +151,7 @@ def test_every_preset_has_a_look_of_its_own(preset):
 
 
 def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
-    lines = contact.STUDY.read(PUBLISHED / "contact", "variants")
+    lines = contact.STUDY.read(PUBLISHED / "contact")["variants"]
     drawn = draw_contact(lines)
     axes = next(panel for panel in drawn.axes if panel.get_title("left") == "MuJoCo")
     words = [label.get_text() for label in axes.get_yticklabels()]

@@ -13,8 +13,8 @@ from engines import core_engines, installed_engines
 from studies import respond
 from studies.cases.paper import HISTORIES
 from studies.cases.selection import chosen_cases
-from studies.old.jobs import ask
 from studies.measures.energy import energy_drift
+from studies.old.jobs import ask
 from studies.precision.figure import style_of
 from studies.precision.methods import METHODS, methods_of
 from studies.precision.report import (
@@ -77,7 +77,7 @@ def test_general_purpose_integrators_converge_to_the_reference(method):
 
 def test_energy_drifts_with_the_method_that_loses_it():
     drifts = {
-        job.labels["value"]: energy_drift(job, ask(job, job.asked))
+        job.labels["value"]: energy_drift(job.block, job.motion, ask(job, job.asked))
         for job in precision_jobs(False, ())
         if (job.labels["method"], job.labels["figure"]) == ("average acceleration", 8)
         and job.labels["value"] in (0.1, 1e-3)

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from engines.parts.factors import AS_BEST, BY_DEFAULT, LEFT_OUT, OWN_STEP
 from studies.drawing.facets import dot, error_scale, key, panels, preset_dots, rows, strip_beyond
 from studies.drawing.styles import title_of
+from studies.kit.say import capital, part
 from studies.measures.presets import in_order, told
-from studies.measures.words import capital, part
 
 MATTER = 6
 """How many variants of an engine are drawn one by one."""
@@ -26,12 +26,12 @@ LEVELS = {AS_BEST: "as tuned", BY_DEFAULT: "its own", OWN_STEP: "its own"}
 def draw_contact(lines: pd.DataFrame) -> Figure:
     """Draw the error of the peak of the variants that matter most, and count the others."""
     engines = list(lines["engine"].unique())
-    shown = [_ordered(lines[lines["engine"] == engine]) for engine in engines]
-    most = max(len(ordered) for ordered, _ in shown)
+    drawn = [_ordered(lines[lines["engine"] == engine]) for engine in engines]
+    most = max(len(ordered) for ordered, _ in drawn)
     drawing, grid = panels(len(engines), 2, (4.9, 0.6 + 0.2 * most), 0.9, sharex=True)
     grid[0].set(xscale="log", xlim=(LOWEST / 2.0, HIGHEST))
     error_scale(grid[0].xaxis, LOWEST, 1.0)
-    for axes, engine, (ordered, others) in zip(grid, engines, shown, strict=True):
+    for axes, engine, (ordered, others) in zip(grid, engines, drawn, strict=True):
         _one_engine(axes, ordered)
         axes.set_ylim(most + 0.5, -0.6)
         axes.set_title(title_of(engine), fontsize=11, fontweight="bold", loc="left")
@@ -41,11 +41,10 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
         axes.set_xlabel(
             "error of the peak, median to largest\n(equal steps all at one p dt)", fontsize=10
         )
-    changes = int((lines["factor"] != "").sum())
-    harmful = int(lines.loc[lines["factor"] != "", "worse"].sum())
+    changed = lines[lines["factor"] != ""]
     drawing.suptitle(
-        f"Of {changes} changes of a contact, one at a time, {harmful} break a case;\n"
-        f"the {MATTER} that matter most for each engine",
+        f"{changed['worse'].sum()} of {len(changed)} changes of a contact, one at a time, break "
+        f"a case;\nthe {MATTER} that matter most for each engine",
         fontsize=12,
     )
     marks = [dot("a case fails", "X", "black"), dot("an outcome is wrong", "s", "black",
@@ -55,11 +54,10 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
 
 
 def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
-    rows(axes, [_label(line) for line in ordered.to_dict("records")])
+    records = ordered.to_dict("records")
+    rows(axes, [_label(line) for line in records])
     strip_beyond(axes, EDGE, "", along="x")
-    for place, (text, line) in enumerate(
-        zip(axes.get_yticklabels(), ordered.to_dict("records"), strict=True)
-    ):
+    for place, (text, line) in enumerate(zip(axes.get_yticklabels(), records, strict=True)):
         colour = told(str(line["preset"])).colour
         text.set(color=colour, fontweight="normal" if line["factor"] else "bold")
         median, error = (max(float(line[name]), LOWEST) for name in ("median_error", "max_error"))
@@ -85,9 +83,8 @@ def _ordered(lines: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
         first=-lines["preset"].map(in_order(lines["preset"]).index),
         own=lines["factor"] != "",
     )
-    varied = lines[lines["own"]].sort_values(
-        ["broken", "lost", "matter"], ascending=False, kind="stable"
-    )
+    most = ["broken", "lost", "matter"]
+    varied = lines[lines["own"]].sort_values(most, ascending=False, kind="stable")
     turn = varied.groupby("preset").cumcount().sort_values(kind="stable")
     varied = varied.loc[turn.index]
     drawn = pd.concat([lines[~lines["own"]], varied.head(MATTER)])

@@ -1,0 +1,332 @@
+"""Contact models: what each setting of an engine's contact costs and buys, one at a time."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import islice
+from typing import TYPE_CHECKING, Annotated, TypeAlias, cast
+
+import numpy as np
+import pandas as pd
+from cyclopts import Parameter
+
+from analytic import conditioning
+from analytic.frame import RockingFrame
+from analytic.response import Outcome
+from engines import ENGINES, core_engines
+from engines.declaration import Stepping
+from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
+from engines.scene import Scene
+from studies.cases.drawn import Drawn, RandomCase, draw
+from studies.cases.paper import Case, free_rocking_window
+from studies.cases.refusal import BadInputError
+from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+from studies.cases.variants import Variant, preset_values, variants
+from studies.kit.arguments import Engines, one_of
+from studies.kit.jobs import Job, Question, Row, ask, summary
+from studies.kit.say import out_of, part
+from studies.kit.study import Study, Tables
+from studies.measures.differences import (
+    WELL_CONDITIONED,
+    with_reference,
+    with_reference_of_frames,
+)
+from studies.measures.energy import SAMPLES, energy_drift, growth
+from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
+from studies.sources.registry import resolve
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from analytic.block import Rocker
+
+STEP, QUICK_STEP = 1e-3, 2e-3
+"""p dt of every variant but those that are about the step."""
+QUICK_ASPECTS = (2, 4)
+STRONG = 0.1
+"""Impacts faster than this, in units of p alpha, show a velocity ratio."""
+SEED, FRAMES = 1, 4
+"""Of the random frames, and how many of them are asked about."""
+KEY = ["engine", "preset", "factor", "level"]
+"""Columns that tell one variant from another."""
+FOUND = ["failed", "wrong", "max_error"]
+"""What shows a variant's quality: outcomes of all cases, peaks of typical ones."""
+
+AnyCase: TypeAlias = "Case | RandomCase"
+"""A case of the paper, or a random frame."""
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Which engines, and what stands on the base.
+
+    Attributes
+    ----------
+    engines
+        Names of engines, without a preset.
+    scene
+        block: cases of the paper. frame: random frames, a beam on 2 to 5 columns.
+    """
+
+    engines: Engines = core_engines()  # noqa: RUF009
+    scene: Annotated[Drawn, one_of(Drawn)] = "block"
+
+
+def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
+    """Return the jobs of every variant, at one step of all and then at the library's own."""
+    framed = options.scene == "frame"
+    cases = frame_cases(quick) if framed else block_cases(quick)
+    tried = [variant for engine in options.engines for variant in variants(engine)]
+    found = [
+        job_of(variant, kind, case, quick, own_step)
+        for own_step in (False, True)
+        for variant in tried
+        if not own_step or (variant.preset == DEFAULT and variant.factor != OWN_STEPS)
+        for kind, case in cases
+        if not framed or is_built_for(variant, case)
+    ]
+    if not found:
+        words = f"none of --engines is built for it: {', '.join(options.engines)}"
+        raise BadInputError(f"--scene is {options.scene!r}; {words}")
+    return found
+
+
+@functools.cache
+def block_cases(quick: bool) -> tuple[tuple[str, Case], ...]:
+    """Return the cases and their sets: "typical", and in full "near overturning" too."""
+    chosen = [(kind, case) for kind, cases in chosen_cases(True).items() for case in cases]
+    if quick:
+        chosen = [(k, c) for k, c in chosen if k == "typical" and c.aspect in QUICK_ASPECTS]
+    return tuple(chosen)
+
+
+@functools.cache
+def frame_cases(quick: bool) -> tuple[tuple[str, RandomCase], ...]:
+    """Return the first random frames that rock and survive, with a κ below WELL_CONDITIONED."""
+    calm: Iterator[RandomCase] = (
+        case
+        for case in draw(SEED, "frame")
+        if np.abs(conditioning(case.block, case.motion)).max() < WELL_CONDITIONED
+    )
+    return tuple(("typical", case) for case in islice(calm, FRAMES // 2 if quick else FRAMES))
+
+
+def is_built_for(variant: Variant, case: AnyCase) -> bool:
+    """Return whether a variant's preset can hold a case: some are for one block alone."""
+    asked = resolve(variant.source)
+    scene = Scene(system=case.block, motion=case.motion, preset=asked.preset)
+    return not asked.declared.lacks(scene, asked.used)
+
+
+def job_of(variant: Variant, kind: str, case: AnyCase, quick: bool, own_step: bool = False) -> Job:
+    """Return the job of a variant and a case, at the library's own step or at that of all."""
+    options = {"settings": dict(variant.settings), **variant.scene}
+    stepping = ENGINES[variant.engine].preset(variant.preset).stepping
+    if stepping is Stepping.FIXED and variant.factor != OWN_STEPS and not own_step:
+        options["step"] = QUICK_STEP if quick else STEP
+    window = free_rocking_window(case.block, case.motion)
+    return Job(
+        labels={
+            **{name: getattr(variant, name) for name in (*KEY, "trap")},
+            "own_step": own_step,
+            "set": kind,
+            **asdict(case),
+        },
+        case=Question(
+            system=case.block,
+            motion=case.motion,
+            duration=window,
+            times=np.linspace(0.0, window, SAMPLES),
+        ),
+        source=variant.source,
+        options=options,
+    )
+
+
+def measure(job: Job) -> Row:
+    """Return the summary, the velocity ratio and its e, slip, penetration and energy.
+
+    Of a frame the velocity ratio implies no e of a single corner.
+    """
+    response, motion = ask(job), job.case.motion
+    system = cast("Rocker", job.case.system)
+    least = STRONG * system.p * system.alpha
+    strong = [each.ratio for each in response.impacts if abs(each.velocity_before) > least]
+    known = strong and response.outcome is not Outcome.FAILED
+    ratio = float(np.median(strong[:COMPARED_IMPACTS])) if known else math.nan
+    framed = isinstance(system, RockingFrame)
+    return {
+        **summary(response),
+        "velocity_ratio": ratio,
+        "ratio_over_eta": ratio / system.restitution,
+        "newton_e": math.nan if framed else newton_e(ratio, system.alpha),
+        "slip_widths": response.slip_m / system.width,
+        "sink_widths": response.sink_m / system.width,
+        "energy_drift": energy_drift(system, motion, response),
+        "energy_growth": growth(system, motion, response),
+    }
+
+
+def newton_e(ratio: float, alpha: float) -> float:
+    """Return the Newton coefficient e of the corner that lands that a velocity ratio implies.
+
+    The ratio is 1 - 3/2 (1 + e) sin^2(alpha), Housner's where e = 0.
+    """
+    return (1.0 - ratio) / (1.5 * math.sin(alpha) ** 2) - 1.0
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return the rows, a line for each variant, and for each at the library's own step."""
+    own = rows["own_step"].astype(bool)
+    lines = {"variants": variant_table(rows[~own]), "own-steps": variant_table(rows[own])}
+    return {"contact": rows, **lines}
+
+
+def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return one line for each variant: its errors, what it changes, its impact, its cost."""
+    framed = "load" in rows
+    compared = with_reference_of_frames(rows) if framed else with_reference(rows)
+    case = ["engine", "preset", "set", *(["case"] if framed else ["figure", "aspect"])]
+    base = compared[compared["factor"] == ""].set_index(case)["peak_ratio"]
+    base = base.where(np.isfinite(base))  # a preset that overturns has no peak to move
+    own = base.reindex(pd.MultiIndex.from_frame(compared[case])).to_numpy()
+    kinds = wrong_in(compared)
+    compared = compared.assign(
+        moved=(compared["peak_ratio"] / own - 1.0).where(compared["error"].notna()).abs(),
+        typical=compared["error"].abs().where(compared["set"] == "typical"),
+        step_s=compared["wall_s"] / compared["steps"].clip(lower=1),
+        failed=kinds == NO_ANSWER,
+        wrong=kinds.isin((FALL, REST)),
+    )
+    groups = compared.groupby(KEY, sort=False)
+    table = groups.agg(
+        trap=("trap", "first"),
+        cases=("outcome", "size"),
+        failed=("failed", "sum"),
+        wrong=("wrong", "sum"),
+        median_error=("typical", "median"),
+        max_error=("typical", "max"),
+        moved=("moved", "max"),
+        ratio_over_eta=("ratio_over_eta", "median"),
+        newton_e=("newton_e", "median"),
+        slip_widths=("slip_widths", "max"),
+        sink_widths=("sink_widths", "max"),
+        energy_drift=("energy_drift", "median"),
+        energy_growth=("energy_growth", "max"),
+        step_s=("step_s", "median"),
+        message=("message", "max"),
+    ).reset_index()
+    first = table.groupby(["engine", "preset"])[["ratio_over_eta", "wrong"]].transform("first")
+    return table.assign(
+        ratio_moved=(table["ratio_over_eta"] / first["ratio_over_eta"] - 1.0).abs(),
+        worse=(table["failed"] > 0) | (table["wrong"] > first["wrong"]),
+    )
+
+
+def recommendation(lines: pd.DataFrame, engine: str) -> pd.DataFrame:
+    """Return a line for each tuned setting of an engine, the one that matters most first.
+
+    What it moves and what errors it leaves where the tuned preset has it at the library's default;
+    and, in columns that end in alone, where it is all that is tuned of the defaults. What breaks a
+    case matters most, then what moves a peak or an impact.
+    """
+    lines = lines[lines["engine"] == engine].set_index("factor")
+    left = lines[(lines["preset"] == BEST) & (lines["level"] == BY_DEFAULT)]
+    alone = lines[(lines["preset"] == DEFAULT) & (lines["level"] == AS_BEST)]
+    both = alone.merge(left, "left", on="factor", suffixes=("_alone", ""))
+    breaks = both[["worse", "worse_alone"]].eq(True).any(axis=1)
+    matter = both.filter(like="moved").max(axis=1).mask(breaks, math.inf)
+    names = {factor.name: factor.settings for factor in ENGINES[engine].factors}
+    values = [preset_values(engine, BEST, names[factor]) for factor in both.index]
+    tuned = [", ".join(f"{name} {value}" for name, value in each.items()) for each in values]
+    shown = ["moved", "ratio_moved", *FOUND, *(f"{name}_alone" for name in FOUND)]
+    table = both[shown].set_axis(pd.Index(tuned, name="set"))
+    return table.iloc[(-matter).argsort(kind="stable")].reset_index()
+
+
+def left_at_default(lines: pd.DataFrame) -> pd.DataFrame:
+    """Return for each engine the setting that costs most where it alone is not tuned."""
+    best = lines[lines["preset"] == BEST]
+    left = best[best["level"] == BY_DEFAULT]
+    left = left.sort_values(["worse", "failed", "max_error"], ascending=False, kind="stable")
+    tuned = best[best["factor"] == ""].set_index("engine")["max_error"]
+    first = left.drop_duplicates("engine").sort_index()
+    return first[["engine", "factor", *FOUND]].assign(as_tuned=first["engine"].map(tuned))
+
+
+def finding(tables: Tables) -> str:
+    """Say which engine errs most with one tuned setting at its default, and how many break."""
+    lines = tables["variants"]
+    left = lines[(lines["preset"] == BEST) & (lines["level"] == BY_DEFAULT)]
+    if left["max_error"].isna().all():
+        return "No engine was asked that rocks with one of its tuned settings left at its default."
+    worst, engines = left.nlargest(1, "max_error").iloc[0], left["engine"].nunique()
+    more = out_of(left.loc[left["worse"], "engine"].nunique(), engines)
+    others = f", and {more} engines predict more outcomes wrong with one setting left so"
+    return (
+        f"{ENGINES[worst['engine']].title} misses peaks by up to {part(worst['max_error'])} with "
+        f"its {worst['factor']} alone left at the library's default{others if engines > 1 else ''}."
+    )
+
+
+def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+    """Return the presets as they are, what each tuned setting buys, and the traps."""
+    lines = tables["variants"]
+    plain = lines["factor"] == ""
+    measured = ["ratio_over_eta", "newton_e", "slip_widths", "sink_widths", "step_s"]
+    traps = lines[(lines["trap"] != "") & ~plain]
+    return {
+        "The setting whose default costs most, where all others are tuned": left_at_default(lines),
+        "Presets as they are": lines.loc[
+            plain, ["engine", "preset", "cases", *FOUND, "median_error", *measured]
+        ],
+        "Defaults at their own step": lines.loc[
+            lines["factor"] == OWN_STEPS, ["engine", "level", *FOUND]
+        ],
+        **{
+            f"What to set in {engine}: left at its default, and alone": recommendation(
+                lines, engine
+            )
+            for engine in lines["engine"].unique()
+        },
+        "Traps": traps[[*KEY, *FOUND, "trap"]],
+    }
+
+
+def figures(tables: Tables) -> Mapping[str, Figure]:
+    """Draw the variants that matter most, a panel for each engine."""
+    from studies.drawing.contact import draw_contact
+
+    return {"contact": draw_contact(tables["variants"])}
+
+
+STUDY = Study(
+    name="contact",
+    question="What does each setting of a contact cost and buy?",
+    help="""One factor of an engine's contact at a time: solver, geometry, friction, damping, ...
+
+From the best fixed-step setting and from the library's defaults, on cases of the paper or on frames
+of several bodies, at one p dt; those that change the defaults at the library's own step too. A
+failure is an answer: the exit code is 1 only where a preset as it is fails at that p dt. Writes
+contact.csv, variants.csv, own-steps.csv, findings.txt and contact.png.""",
+    options=Options,
+    quick="Fewer cases and twice the step: less than a minute on 2 cores.",
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    needed=lambda rows: [row for row in rows if not row["factor"] and not row["own_step"]],
+    texts=("factor", "level", "trap"),
+    captions={
+        "contact": "Error of the peak, median to largest, of each preset of an engine, and with "
+        "one setting of its contact changed or one help of landing left out: the six that matter "
+        "most, of each preset in turn, the others in one line.",
+    },
+)
+command = STUDY.command()

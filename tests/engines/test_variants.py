@@ -1,0 +1,165 @@
+"""Every variant of a contact answers, and what it sets is read back."""
+
+import functools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.response import Outcome, Reason
+from engines import ENGINES, Scene, installed_engines
+from engines.declaration import Stepping
+from engines.mujoco.settings import TUNED, MujocoSettings
+from engines.parts.factors import BEST, LEFT_OUT, OWN_STEPS
+from engines.pybullet.build import BulletWorld
+from engines.pybullet.settings import BulletSettings
+from engines.run.drive import build, run
+from engines.run.monitor import Monitor
+from studies.cases.selection import chosen_cases
+from studies.cases.variants import variants
+
+CASE = chosen_cases(True)["typical"][3]
+VARIANTS = [variant for engine in installed_engines() for variant in variants(engine)]
+STEP = 5e-3
+LEFT = (Reason.SANK, Reason.THROWN, Reason.SLID)
+"""Why the response is no longer that of a rocking block."""
+MUJOCO_TUNED = functools.partial(replace, TUNED)
+
+
+def scene(**options):
+    return Scene(system=CASE.block, motion=CASE.motion, **{"step": STEP, **options})
+
+
+def of(engine, preset, name):
+    return next(v for v in VARIANTS if (v.engine, v.preset, v.name) == (engine, preset, name))
+
+
+FIRST = {(v.engine, v.factor): v for v in reversed(VARIANTS)}.values()
+"""Of each engine one variant of each factor."""
+
+
+@pytest.mark.parametrize(
+    "variant",
+    [pytest.param(v, marks=[] if v in FIRST else pytest.mark.slow) for v in VARIANTS],
+    ids=lambda v: f"{v.engine}-{v.preset}-{v.name}",
+)
+def test_every_variant_answers(variant):
+    """Builds, reads back what it set, and gives a response; only a declared trap may fail."""
+    asked = scene(preset=variant.preset, settings=variant.settings, **variant.scene)
+    response = run(variant.engine, asked)
+    if response.outcome is Outcome.FAILED:
+        assert variant.trap and response.reason in LEFT, response.message  # no setting was refused
+    elif response.outcome is Outcome.AT_REST:
+        assert variant.trap  # it slid, and never rocked; steps this coarse may overturn a block
+    else:
+        assert response.peak_ratio > 0.0
+        assert response.sink_m >= 0.0
+
+
+def test_variants_are_told_apart():
+    names = [(v.engine, v.preset, v.name) for v in VARIANTS]
+    assert len(set(names)) == len(names)
+    for name in installed_engines():
+        found = {v.factor for v in VARIANTS if v.engine == name}
+        assert {factor.name for factor in ENGINES[name].factors} <= found
+
+
+def test_a_variant_differs_from_its_preset():
+    """What a variant sets is not what its preset sets already, or it would compare nothing."""
+    for variant in VARIANTS:
+        plain = ENGINES[variant.engine].preset(variant.preset).settings
+        if variant.factor and not variant.scene and variant.factor != OWN_STEPS:
+            assert scene(settings=variant.settings).choose(plain) != plain, variant
+
+
+@pytest.mark.parametrize(
+    ("settings", "values", "message"),
+    [
+        (BulletSettings, {"solver": "Lemke"}, "solver is 'Lemke'; it must be one of sequential"),
+        (BulletSettings, {"base_geometry": "sea"}, "base_geometry is 'sea'; it must be one of"),
+        (BulletSettings, {"warm_starting": 1.5}, "warm_starting is 1.5; it must be from 0 to 1"),
+        (BulletSettings, {"contact_stiffness": 1.0}, "contact_damping are .* given together"),
+        (
+            BulletSettings,
+            {"contact_stiffness": -1.0, "contact_damping": 1.0},
+            "contact_stiffness is -1.0; it must be positive",
+        ),
+        (MujocoSettings, {"integrator": "Heun"}, "integrator is 'Heun'; it must be one of Euler"),
+        (MujocoSettings, {"margin": -1.0}, "margin is -1.0; it must be 0 or more"),
+        (MujocoSettings, {"margin": "wide"}, "margin is 'wide'; it must be 0 or more"),
+        (MujocoSettings, {"noslip_iterations": -1}, "noslip_iterations is -1; it must be 0"),
+        (MUJOCO_TUNED, {"solref": (2.0, 1.0)}, "solref is .* it must be None"),
+        (MUJOCO_TUNED, {"impedance": None}, "impedance is None"),
+        (MUJOCO_TUNED, {"damping": 0.0}, "damping is 0.0; it must be positive"),
+        (MUJOCO_TUNED, {"stiffness": None}, "stiffness are .* given together"),
+    ],
+)
+def test_what_is_not_allowed_is_named(settings, values, message):
+    with pytest.raises(ValueError, match=message):
+        settings(**values)
+
+
+def test_solref_and_margin_reach_the_library():
+    settings = of("mujoco", BEST, "reference: 2 dt 1").settings
+    asked, dt_s = scene(preset=BEST, settings={**settings, "margin": 1e-3}), 1e-3
+    world = build(ENGINES["mujoco"], asked)
+    monitor = Monitor(asked, dt_s, Stepping.FIXED)
+    monitor.make_room(1)
+    world.step(monitor.next(world.state()))
+    assert np.all(world._model.pair_solref == [2.0 * dt_s, 1.0])
+    assert world._model.pair_margin == pytest.approx(1e-3 * CASE.block.width)
+    world.close()
+
+
+def test_stiffness_reads_back_where_the_library_tells(monkeypatch):
+    settings = {"multibody": True, "contact_stiffness": 1e6, "contact_damping": 1e5}
+    assert run("pybullet", scene(preset=BEST, settings=settings)).outcome is Outcome.ROCKED
+    do = BulletWorld._do
+
+    def forgetful(self, call):
+        lost = ("contactStiffness", "contactDamping")
+        kept = {name: value for name, value in call.arguments.items() if name not in lost}
+        return do(self, replace(call, arguments=kept))
+
+    monkeypatch.setattr(BulletWorld, "_do", forgetful)
+    response = run("pybullet", scene(preset=BEST, settings=settings))
+    assert response.message.startswith("contactDamping was set to")
+
+
+def test_a_mixed_reference_is_the_default():
+    """One zero in solref gives, to the last bit, what the library's default gives."""
+    peaks = [
+        run(
+            "mujoco", scene(preset=BEST, settings=of("mujoco", BEST, f"reference: {name}").settings)
+        ).peak_ratio
+        for name in ("2 dt 0", "0.02 s 1, best impedance")
+    ]
+    assert peaks[0] == peaks[1]
+
+
+def test_a_base_without_velocity_carries_nothing():
+    for engine, way in (("pybullet", "velocity"), ("mujoco", "surfacevel")):
+        moved, told = (
+            of(engine, BEST, f"moving base: {word}") for word in ("by position alone", f"by {way}")
+        )
+        fails, rocks = (
+            run(engine, scene(preset=BEST, settings=v.settings, **v.scene)) for v in (moved, told)
+        )
+        assert fails.outcome is Outcome.FAILED
+        assert rocks.outcome is Outcome.ROCKED
+
+
+def test_drag_takes_energy_from_the_swing():
+    """Bullet's default damping lowers the peak below that without it, far beyond rounding."""
+    peaks = [
+        run("pybullet", scene(preset=BEST, settings={"damping": value})).peak_ratio
+        for value in (0.0, 0.04)
+    ]
+    assert peaks[1] < peaks[0] - 1e-3
+
+
+def test_landing_is_tried_without_each_of_what_helps_it():
+    for name in installed_engines():
+        helped = {key.name.lower() for key, out in ENGINES[name].best.helped_by.items() if out}
+        found = {v.level for v in VARIANTS if v.engine == name and v.factor == LEFT_OUT}
+        assert found == helped
