@@ -12,14 +12,14 @@ import pytest
 from commanding import redrawn
 from declared import equal_to
 from PIL import Image
+from studies.kit.journal import rows_in
 
 from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
 from engines import ENGINES, installed_engines
 from studies import respond
 from studies.cases.paper import Case
 from studies.catalogue import CHAPTERS
-from studies.kit.journal import rows_in
-from studies.linearizations.study import errors_on, summarize
+from studies.linearizations import errors_on, line
 from studies.measures.published import PUBLISHED
 
 AWAY = set(ENGINES) - set(installed_engines())
@@ -93,8 +93,8 @@ def test_random_cases_are_what_comes_out_today():
 
 def test_linearizations_are_what_comes_out_today():
     kept = published("linearizations/linearizations.csv", dtype={"changed": str})
-    today = summarize(errors_on("paper")).drop(columns="title")
-    kept = kept[kept["grid"] == "paper"].drop(columns="title").reset_index(drop=True)
+    kept = kept[kept["grid"] == "paper"].set_index("changed").drop(columns=["grid", "title"])
+    today = pd.DataFrame([line(errors_on("paper", changed)) for changed in kept.index], kept.index)
     pd.testing.assert_frame_equal(today, kept, check_dtype=False, rtol=1e-9)
 
 

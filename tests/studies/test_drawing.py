@@ -15,6 +15,7 @@ from studies.catalogue import STUDIES
 from studies.drawing.contact import MATTER, draw_contact
 from studies.drawing.figures import lay_out
 from studies.drawing.labels import Name, around, spread
+from studies.drawing.linearizations import ONSETS
 from studies.drawing.styles import (
     ENGINE_COLOURS,
     ENGINE_MARKERS,
@@ -22,7 +23,6 @@ from studies.drawing.styles import (
     look_at,
     title_of,
 )
-from studies.linearizations.figure import ONSETS
 from studies.measures.presets import PRESETS, in_order, told
 from studies.measures.published import PUBLISHED
 from studies.overturning.figure import DIFFERENCE_COLOURS

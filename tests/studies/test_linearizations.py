@@ -1,13 +1,17 @@
-"""The eight linearizations: the named ones among them, what changes what, the page."""
+"""The eight linearizations: the named ones among them, what each change does, the conclusions."""
 
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from analytic import MODELS, peak_ratios
-from studies.linearizations import study as linearizations
-from studies.linearizations.study import NAMED, VARIANTS, errors_on, grid
+from studies import linearizations
+from studies.__main__ import run as rocking
+from studies.kit.run import run
+from studies.linearizations import NAMED, VARIANTS, errors_on, grid
+from studies.measures.differences import posed_cases
 
 
 @pytest.mark.parametrize(("changed", "name"), NAMED.items())
@@ -31,41 +35,49 @@ def test_each_change_is_what_it_says(changed):
 def test_the_saddle_alone_scales_the_rotation_and_changes_no_outcome():
     """A linear model's equation holds for any multiple of y that scales saddle and forcing."""
     cases = grid("paper").iloc[::7]
-    posed = (np.arctan(1.0 / cases["aspect"]), *cases.iloc[:, 1:].to_numpy().T)
+    posed = posed_cases(cases)
+    scale = np.tan(posed[0]) / posed[0]
     for changed in ("00", "01", "10", "11"):
         at_alpha, outcome = peak_ratios(*posed, model=VARIANTS[f"{changed}0"])
         at_tangent, same = peak_ratios(*posed, model=VARIANTS[f"{changed}1"])
         # but for a block whose side touches the ground, at 90 degrees whatever its saddle
         assert np.mean(outcome == same) > 0.99
         both = np.isfinite(at_alpha) & np.isfinite(at_tangent)
-        scale = (np.tan(posed[0]) / posed[0]).to_numpy()
         np.testing.assert_allclose(at_tangent[both], (scale * at_alpha)[both], rtol=1e-11)
 
 
 def test_grids_have_no_copies_and_errors_are_against_the_exact_peak():
     assert len(grid("paper")) == 480
     assert not grid("wide").duplicated().any()
-    errors = errors_on("paper")
-    row = errors[(errors["changed"] == "111") & errors["error"].notna()].iloc[40]
+    errors = errors_on("paper", "111")
+    row = errors[errors["error"].notna()].iloc[40]
     posed = (math.atan(1 / row["aspect"]), *row[["amplitude_g", "omega_over_p", "half_cycles"]])
     peaks = [float(peak_ratios(*posed, model=name)[0]) for name in ("modified", "exact")]
     assert row["error"] == pytest.approx(peaks[0] / peaks[1] - 1.0)
     assert row["difference"] == pytest.approx(peaks[0] - peaks[1])
 
 
-def test_every_variant_is_summarized_on_both_grids():
-    lines = linearizations.summarize(linearizations.all_errors())
-    assert len(lines) == 16 and not lines.duplicated(["grid", "changed"]).any()
+def test_tables_follow_the_rows(monkeypatch):
+    monkeypatch.setattr(linearizations, "GRIDS", ("paper",))
+    rows = pd.DataFrame(run(linearizations.jobs((), False), linearizations.measure))
+    wide = rows.assign(
+        grid="wide", by_aspect=[[dict(it) for it in each] for each in rows["by_aspect"]]
+    )
+    both = pd.concat([rows, wide], ignore_index=True)
+    tables = linearizations.tabulate(both)
+    lines = tables["linearizations"].set_index(["grid", "changed"])
+    assert len(lines) == 16 and len(tables["quantiles"]) == 16 * 201
+    assert lines.loc[("paper", "000"), ["cases", "wrong", "false"]].tolist() == [480, 26, 25]
+    assert tables["slenderness"].groupby("grid")["false"].sum()["paper"] == lines["false"].sum() / 2
+    assert tables["findings"]["holds"].tolist() == [False, True, True]
+    assert "onset" in linearizations.finding(tables) and "61 %" in linearizations.finding(tables)
+    for changed, name, value in (("000", "false", 0), ("111", "wrong", 99)):
+        for row in both.loc[both["changed"] == changed, "by_aspect"]:
+            row[0][name] = row[1][name] = row[2][name] = value
+    assert linearizations.tabulate(both)["findings"]["holds"].tolist() == [False, False, False]
 
 
-def test_what_the_named_linearizations_miss_at_each_slenderness():
-    errors = linearizations.all_errors()
-    found = linearizations.by_slenderness(errors)
-    assert len(found) == 12
-    mine = errors[(errors["grid"] == "wide") & (errors["changed"] == "111")]
-    mine = mine[mine["aspect"] == found.index[3]]
-    assert found["modified error"].iloc[3] == mine["error"].abs().median()
-    assert found["modified wrong"].iloc[3] == mine["wrong"].mean()
-    worse = errors.assign(wrong=errors["wrong"] | (errors["changed"] == "111"))
-    assert linearizations.modified_is_better(errors).holds
-    assert not linearizations.modified_is_better(worse).holds
+@pytest.mark.parametrize("words", ["--sources exact", "--quick", "--jobs 0", "--time-limit x"])
+def test_refused(words, tmp_path, capsys):
+    assert rocking(["linearizations", "--out", str(tmp_path / "new"), *words.split()]) == 2
+    assert words.partition(" ")[0] in capsys.readouterr().err

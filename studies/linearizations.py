@@ -1,0 +1,236 @@
+"""What in a linearization errs: its onset, its frequency or its saddle, each changed alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from analytic import peak_ratios
+from analytic.block import RigidBlock
+from analytic.models import Model
+from analytic.motion import SinePulse
+from studies.cases.paper import PULSES, sweep_cases
+from studies.kit.jobs import Job, Question, Row
+from studies.kit.say import out_of, part
+from studies.kit.study import Study, Tables
+from studies.measures.claims import claim, table_of
+from studies.measures.differences import posed_cases
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NAMED = {"000": "housner", "100": "onset-matched", "111": "modified"}
+"""Which of onset, frequency and saddle are changed from Housner's -> the model's name."""
+CHANGES = {
+    "100": "onset: with g tan α instead of g α",
+    "010": "frequency: with p√cos α instead of p",
+    "001": "saddle: with tan α instead of α",
+}
+"""The one that is changed, and how, in words."""
+GRIDS, QUANTILES = ("paper", "wide"), np.linspace(0.0, 1.0, 201)
+WRONG = ["wrong", "false", "missed"]
+ERRORS = ["median_error", "rms_error", "max_error", "rms_difference", "max_difference"]
+
+
+def variant(changed: str) -> Model:
+    """Return the linear model with Housner's or, by a 1, the modified onset, frequency and saddle.
+
+    The onset is g alpha or g tan(alpha), the frequency p or p sqrt(cos(alpha)), the saddle alpha or
+    tan(alpha); the forcing factor is the saddle over the onset.
+    """
+    onset, frequency, saddle = (digit == "1" for digit in changed)
+    words = f"onset g {'tan ' * onset}α, p{'√cos α' * frequency}, saddle {'tan ' * saddle}α"
+    known = NAMED.get(changed, "")
+    lifts, falls = (np.tan if tangent else np.positive for tangent in (onset, saddle))
+    return Model(
+        name=known or words,
+        title=f"{words} ({known})" if known else words,
+        linear=True,
+        saddle=falls,
+        frequency=lambda alpha: np.sqrt(np.cos(alpha)) if frequency else np.ones_like(alpha),
+        forcing=lambda alpha: falls(alpha) / lifts(alpha),
+    )
+
+
+VARIANTS = {word: variant(word) for word in map("".join, product("01", repeat=3))}
+"""Changes from Housner's, as of NAMED -> the model: all eight."""
+
+
+@cache
+def grid(name: str) -> pd.DataFrame:
+    """Return the cases of a grid, and the exact solution's peaks and outcomes.
+
+    "paper" is that of figures 6 to 9, without the copies by similarity; "wide" has H/B from 1.5 to
+    10, amplitudes from 1.02 to 4 onsets and omega/p from 0.2 to 8.
+    """
+    if name == "paper":
+        cases = [c for c in sweep_cases([6, 7, 8, 9]) if c.width_m == 0.5]
+        rows = [(c.aspect, c.amplitude_g, c.omega_over_p, PULSES[c.pulse]) for c in cases]
+    else:
+        aspects, onsets = np.geomspace(1.5, 10.0, 12), np.geomspace(1.02, 4.0, 30)
+        posed = product(aspects, onsets, np.linspace(0.2, 8.0, 40), PULSES.values())
+        rows = [(aspect, onset / aspect, omega, cycles) for aspect, onset, omega, cycles in posed]
+    columns = ["aspect", "amplitude_g", "omega_over_p", "half_cycles"]
+    found = pd.DataFrame(rows, columns=columns)
+    peak, outcome = peak_ratios(*posed_cases(found))
+    return found.assign(exact_peak=peak, exact_outcome=outcome)
+
+
+def jobs(_: tuple[str, ...], quick: bool) -> list[Job]:
+    """Return a job for each grid and variant; its question stands for all cases of the grid."""
+    block = RigidBlock(width=0.5, height=1.5)
+    question = Question(system=block, motion=SinePulse.in_g(0.4, omega=block.p))
+    return [
+        Job(labels={"grid": name, "changed": changed}, case=question, source="exact")
+        for name, changed in product(GRIDS, VARIANTS)
+    ]
+
+
+def measure(job: Job) -> Row:
+    """Return the line of a variant on a grid, that of each H/B, and the quantiles of its errors."""
+    errors = errors_on(job.labels["grid"], job.labels["changed"])
+    sizes = errors["error"].abs().dropna().quantile(QUANTILES)
+    by_aspect = [{"aspect": aspect, **line(rows)} for aspect, rows in errors.groupby("aspect")]
+    lists = {"quantile": QUANTILES.tolist(), "error": sizes.tolist(), "by_aspect": by_aspect}
+    return {"outcome": "compared", "message": "", **line(errors), **lists}
+
+
+def errors_on(name: str, changed: str) -> pd.DataFrame:
+    """Return every case of a grid with what a variant differs by from the exact solution."""
+    cases = grid(name)
+    peak, outcome = peak_ratios(*posed_cases(cases), model=VARIANTS[changed])
+    exact = cases["exact_peak"].to_numpy()
+    both = np.isfinite(peak) & np.isfinite(exact) & (exact > 0.0) & (peak > 0.0)
+    mine, right = (np.where(both, value, np.nan) for value in (peak, exact))
+    return cases.assign(
+        error=mine / right - 1.0,
+        difference=mine - right,
+        false=np.isinf(peak) & ~np.isinf(exact),
+        missed=~np.isinf(peak) & np.isinf(exact),
+        wrong=outcome != cases["exact_outcome"].to_numpy(),
+    )
+
+
+def line(errors: pd.DataFrame) -> Row:
+    """Return what some cases have in common; errors are relative, differences in theta_cr."""
+    error, apart = errors["error"].abs(), errors["difference"].abs()
+    numbers = (error.median(), _rms(error), error.max(), _rms(apart), apart.max())
+    wrong = {name: int(errors[name].sum()) for name in WRONG}
+    sizes = dict(zip(ERRORS, map(float, numbers), strict=True))
+    return {"cases": len(errors), **wrong, "survivors": int(error.count()), **sizes}
+
+
+def _rms(values: pd.Series[float]) -> float:
+    return float(np.sqrt((values**2).mean()))
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return a line for each grid and variant, the same by H/B, quantiles, and conclusions."""
+    who, lists = ["grid", "changed"], ["quantile", "error"]
+    lines = rows.drop(columns=["source", "outcome", "message", *lists, "by_aspect"])
+    slender = rows[[*who, "by_aspect"]].explode("by_aspect", ignore_index=True)
+    by_aspect = slender[who].join(pd.DataFrame(slender["by_aspect"].tolist()))
+    quantiles = rows[[*who, *lists]].explode(lists, ignore_index=True)
+    tested = [frequency_matters(lines), maps_mislead(by_aspect), modified_is_better(by_aspect)]
+    return {
+        "linearizations": lines.assign(title=[VARIANTS[word].title for word in lines["changed"]]),
+        "quantiles": quantiles.astype(dict.fromkeys(lists, float)),
+        "slenderness": by_aspect,
+        "findings": table_of(tested),
+    }
+
+
+def finding(tables: Tables) -> str:
+    """Say which of the three changes, made alone, brings Housner's linearization closest."""
+    lines = tables["linearizations"]
+    medians = lines[lines["grid"] == "paper"].set_index("changed")["median_error"]
+    best = str(medians[list(CHANGES)].idxmin())
+    before, after = part(medians["000"]), part(medians[best])
+    return (
+        f"Housner's linearization errs most in its {CHANGES[best]} its median error falls from "
+        f"{before} to {after} on the paper's cases."
+    )
+
+
+def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+    """Return the paper's conclusions, a line for each variant, and the named ones by H/B."""
+    lines = tables["linearizations"][["grid", "title", "cases", *WRONG, *ERRORS]]
+    wide = tables["slenderness"].query("grid == 'wide'")
+    medians = wide.pivot(index="aspect", columns="changed", values="median_error")[list(NAMED)]
+    return {
+        "What the paper concludes": tables["findings"],
+        **{f"On the {name} grid": lines[lines["grid"] == name] for name in GRIDS},
+        "On the wide grid by H/B, the median error": medians.rename(columns=NAMED).reset_index(),
+    }
+
+
+def figures(tables: Tables) -> Mapping[str, Figure]:
+    """Draw by how much a part of the cases errs at most."""
+    from studies.drawing.linearizations import draw_distributions
+
+    titles = {word: model.title for word, model in VARIANTS.items()}
+    return {"linearizations": draw_distributions(tables["quantiles"], titles, NAMED)}
+
+
+@claim("(a) p√cos α in place of p brings a linearization closer, other things being equal")
+def frequency_matters(lines: pd.DataFrame) -> tuple[bool, str]:
+    """Change the frequency alone, with either onset and either saddle."""
+    medians = lines.set_index(["grid", "changed"])["median_error"]
+    pairs = [(grid, onset, saddle) for grid in GRIDS for onset in "01" for saddle in "01"]
+    closer = [medians[g, f"{o}1{s}"] < medians[g, f"{o}0{s}"] for g, o, s in pairs]
+    return all(closer), f"the median error falls in {out_of(sum(closer), len(closer))} comparisons"
+
+
+@claim("(b) Housner's linearization overturns blocks that survive, also at H/B of 3 and more")
+def maps_mislead(slender: pd.DataFrame) -> tuple[bool, str]:
+    """Count what Housner's linearization overturns falsely, also where H/B is 3 or more."""
+    words, fallen = [], {}
+    for name, rows in slender[slender["changed"] == "000"].groupby("grid", sort=False):
+        all_, tall = (part[["false", "cases"]].sum() for part in (rows, rows[rows["aspect"] >= 3]))
+        fallen[name] = tall["false"] > 0
+        words.append(
+            f"{name} grid: {out_of(*all_)} falsely overturned, at H/B ≥ 3 {out_of(*tall)}; "
+            f"{rows['missed'].sum()} missed"
+        )
+    return bool(fallen["paper"]), "; ".join(words)
+
+
+@claim("(c) The modified linearization is closer than Housner's at every slenderness tried")
+def modified_is_better(slender: pd.DataFrame) -> tuple[bool, str]:
+    """Compare median errors and wrong outcomes at every slenderness."""
+    wide = slender[slender["grid"] == "wide"].set_index(["changed", "aspect"])
+    ours, housners = wide.loc["111"], wide.loc["000"]
+    closer = ours["median_error"] < housners["median_error"]
+    as_right = ours["wrong"] <= housners["wrong"]
+    counts = [out_of(each.sum(), len(ours)) for each in (closer, as_right)]
+    return bool((closer & as_right).all()), (
+        f"closer in the median at {counts[0]} values of H/B, and wrong no more often at {counts[1]}"
+    )
+
+
+STUDY = Study(
+    name="linearizations",
+    question="What in a linearization errs, and do the paper's conclusions hold?",
+    help="""What in a linearization errs: onset, frequency and saddle, each changed alone.
+
+All eight combinations of Housner's and the modified choices against the exact solution, on the
+paper's cases and on a wider grid, and the paper's conclusions. Takes half a minute. Writes
+linearizations.csv, slenderness.csv, quantiles.csv, findings.csv, findings.txt and a picture.""",
+    texts=("changed",),
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    captions={
+        "linearizations": "Up to which error of the peak a part of the cases stays, for eight "
+        "linearizations on two grids: the colour tells the onset, the dash the frequency.",
+    },
+)
+command = STUDY.command()
