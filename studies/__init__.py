@@ -1,8 +1,8 @@
 """The questions asked of the reference and the engines.
 
-One folder a study, listed in `catalogue`. A case flows one way: `cases` poses it, `sources`
-answers, `kit` makes of both what a study leaves in a folder (`kit.plan` says how), `measures` says
-what an answer is worth, `drawing` draws it, `page` shows all.
+One file a study, or a folder. A case flows one way: `cases` has it, `sources` answers, `kit` runs
+both and keeps the rows in a folder (`kit.study` says how), `measures` compares an answer with the
+exact one, `drawing` draws it, `page` shows all.
 """
 
 from __future__ import annotations
@@ -129,33 +129,27 @@ def side_by_side(
     import pandas as pd
 
     from analytic.checks import finite
-    from studies.compare.records import records
-    from studies.compare.study import compare, in_this_process, window_of
-    from studies.old.arguments import BadInputError
-    from studies.old.options import Yours
-    from studies.old.posing import Posed, refuse_endless
+    from studies.cases.refusal import BadInputError
+    from studies.compare.rows import compare, records, window_of
+    from studies.kit.jobs import Question
+    from studies.kit.options import Yours
+    from studies.kit.scene_options import refuse_endless
 
     if isinstance(sources, str) or not (sources := list(sources)):
         raise ValueError(f"sources is {sources!r}; it must be a list of one name or more")
+    given = {"duration": duration, "friction": friction, "dt": dt}
+    duration, friction, dt = (
+        None if value is None else finite(name, value) for name, value in given.items()
+    )
+    if len(start) != 2:
+        raise ValueError(f"start is {start!r}; it must be theta [rad] and theta' [rad/s]")
+    start = (finite("start", start[0]), finite("start", start[1]))
     try:
-        given = {"duration": duration, "friction": friction, "dt": dt}
-        duration, friction, dt = (
-            None if value is None else finite(name, value) for name, value in given.items()
-        )
-        if len(start) != 2:
-            raise ValueError(f"start is {start!r}; it must be theta [rad] and theta' [rad/s]")
-        start = (finite("start", start[0]), finite("start", start[1]))
         window = window_of(block, motion, duration)
         refuse_endless(block, window, duration=duration, dt=dt)
-        rows = compare(
-            block,
-            Posed(motion, start),
-            sources,
-            window,
-            executor=in_this_process,
-            yours=Yours(friction=friction, dt=dt),
-            estimate=estimate,
-        )
+        case = Question(system=block, motion=motion, start=start, duration=window)
+        yours = Yours(friction=friction, dt=dt)
+        rows = compare(case, sources, yours=yours, estimate=estimate)
     except BadInputError as error:
         raise ValueError(str(error).removeprefix("--")) from None
     return pd.DataFrame(records(rows))
