@@ -3,6 +3,8 @@
 A row is found again by the key of its job, and kept as long as what made it is the same.
 """
 
+from __future__ import annotations
+
 import json
 import math
 import os

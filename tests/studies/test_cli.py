@@ -223,7 +223,7 @@ def test_a_sweep_through_the_command_line(tmp_path, capsys):
 def test_help_explains_units(capsys):
     assert run(["--help"]) == 0
     text = capsys.readouterr().out
-    assert all(study.name in text for study in COMMANDS)
+    assert all(name in text for name in COMMANDS)
     assert run(["compare", "--help"]) == 0
     text = " ".join(capsys.readouterr().out.split())
     for unit in ("[m]", "[g]", "[rad/s]", "[s]"):
