@@ -1,20 +1,61 @@
-"""What a case costs, in words: its time, and of how many runs it is the best."""
+"""What a run costs: its time, as the best of so many runs that it is known, and that in words."""
 
 import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from time import perf_counter
 
-from studies.measures.words import duration
+from analytic.response import Response
+from studies.kit.say import duration
 
 LEAST_RUNS = 5
 """A time is of the best of so many runs at least, or marked."""
-
+LEAST_S = 0.02
+"""Time [s] spent on runs at least: what is timed in it is warm."""
+AGREED = 0.02
+"""Part by which the two shortest may differ: a minimum that came twice is no accident."""
 STEPPED = "A compiled loop over `mj_step` takes MuJoCo's steps; Python takes all others."
 """Said beside times of a step or of a case."""
-
 OUTDATED = (
     "PyBullet's published times, but for `naive` and `recommended`, are those of a retired "
     "compiled loop, shorter than today's."
 )
 """Said beside them until they are measured again."""
+
+
+def enough(times: Sequence[float], spent_s: float, most_s: float) -> bool:
+    """Return whether the shortest of some run times is known, or nothing more may be spent on it.
+
+    Parameters
+    ----------
+    times : sequence of float
+        Run times so far [s], one at least.
+    spent_s, most_s : float
+        How long the runs took with all about them [s], and after what time there is no further one.
+    """
+    if spent_s >= most_s:
+        return True
+    if len(times) < LEAST_RUNS or spent_s < LEAST_S:
+        return False
+    shortest, next_shortest = sorted(times)[:2]
+    return next_shortest <= (1.0 + AGREED) * shortest
+
+
+def best_of(action: Callable[[], Response], most_s: float) -> tuple[Response, int]:
+    """Return the response with the shortest run time and the shortest set-up time, and the runs.
+
+    Parameters
+    ----------
+    action : callable
+        Returns a response with its run time; repeated until `enough`.
+    most_s : float
+        Time [s] after which there is no further run.
+    """
+    began, runs = perf_counter(), [action()]
+    while not enough([run.wall_s for run in runs], perf_counter() - began, most_s):
+        runs.append(action())
+    best = min(runs, key=lambda run: run.wall_s)
+    return replace(best, setup_s=min(run.setup_s for run in runs)), len(runs)
 
 
 def cost_text(wall_s: float, runs: float, each: str = "") -> str:

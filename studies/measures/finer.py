@@ -26,6 +26,15 @@ def cheapest_kept(
     return None if good.empty else good.sort_values("wall_s").iloc[0]
 
 
+def cheapest_below(lines: pd.DataFrame, target: float) -> pd.Series[Any] | None:
+    """Return the fastest setting, among those of methods, whose largest error is below a target.
+
+    The lines are those of work-precision.csv, or `joint` ones.
+    """
+    keeps = (lines["failed"] == 0) & (lines["max_error"] <= target)
+    return cheapest_kept(lines, keeps, lines["method"])
+
+
 def joint(table: pd.DataFrame) -> pd.DataFrame:
     """Return both sets of a setting as one line: failures, largest error, mean time of a case."""
     total = table.assign(wall_s=table["wall_s"] * table["cases"])

@@ -1,0 +1,200 @@
+"""Error against run time, a panel for each engine; and what each thing put back costs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+from engines import ENGINES
+from studies.drawing.facets import error_scale, strip_beyond
+from studies.drawing.labels import Name, around, beside
+from studies.drawing.styles import LOWEST, Style, engine_style, title_of
+from studies.kit.say import duration, listed
+from studies.measures.finer import joint
+from studies.measures.presets import told
+from studies.precision import EXACT, engines_of, exact_cost
+from studies.precision import title_of as called
+
+STYLES = {
+    EXACT: Style("#000000", "-", "o", 2.2),
+    "SciPy RK45": Style("#999999", "-", "s"),
+    "SciPy DOP853": Style("#777777", "--", "D"),
+    "SciPy Radau": Style("#aaaaaa", "-.", "v"),
+    "SciPy LSODA": Style("#555555", ":", "^"),
+    "RK4": Style("#56B4E9", "-", "o"),
+    "RK4, contact to 1e-6": Style("#56B4E9", "--", "x"),
+    "average acceleration": Style("#E69F00", "-", "s"),
+    "housner, closed form": Style("#D55E00", "", "*"),
+    "modified, closed form": Style("#0072B2", "", "*"),
+    "onset-matched, closed form": Style("#CC79A7", "", "*"),
+}
+OTHERS = "Models, and solvers of ordinary differential equations"
+LEAST = 1e-10
+"""End of the scale of errors of engines."""
+PALE, GREY = "#dcdcdc", "#b5b5b5"
+"""Of the other methods behind those that a panel is about, and of the published engines."""
+ACROSS = 3
+"""Panels of engines in a row."""
+WRONG, EDGE, TOP = 10.0, 3.0, 60.0
+"""Where methods are drawn that fail or get an outcome wrong, and the strip around that."""
+
+
+def engine_in(method: str) -> tuple[str, str]:
+    """Return the engine of a method and its preset; two empty words for all other methods."""
+    engine, _, preset = method.partition(" ")
+    return (engine, preset) if engine in ENGINES else ("", "")
+
+
+def style_of(method: str) -> Style:
+    """Return the style of a method: of an engine that of its preset; grey for what is unknown."""
+    engine, varied = engine_in(method)
+    if not engine:
+        return STYLES.get(method, Style("#777777", "-", "."))
+    preset, _, dial = varied.partition(", ")
+    colour = told(preset).colour
+    return Style(colour, ":", "+", 0.9) if dial else Style(colour, "-", "o", 1.6, "full")
+
+
+def placed(table: pd.DataFrame) -> pd.DataFrame:
+    """Return both sets of a setting as one line, with its place on the scale of errors.
+
+    Its error is the larger of the medians; "wrong" says whether a case failed or has a wrong
+    outcome. A case that was given up before it was timed has no place on the scale.
+    """
+    medians = table.groupby(["method", "value"], sort=False)["median_error"].max()
+    lines = joint(table).assign(error=medians.to_numpy())
+    lines = lines.assign(wrong=(lines["failed"] > 0) | ~np.isfinite(lines["max_error"]))
+    lines["error"] = lines["error"].where(np.isfinite(lines["error"])).clip(lower=LOWEST)
+    return lines[lines["wall_s"] > 0.0]
+
+
+def draw_precision(table: pd.DataFrame) -> Figure:
+    """Draw the median error of the peak against the run time of a case."""
+    lines = placed(table)
+    engine = lines["method"].map(lambda method: engine_in(method)[0])
+    engines = [name for name in engine.unique() if name]
+    first = [""] * bool((engine == "").any())
+    down = -(-len(engines) // ACROSS)
+    drawing = Figure(figsize=(10.4, 1.2 + 2.9 * len(first) + 2.4 * down), layout="constrained")
+    grid = drawing.add_gridspec(
+        len(first) + down, ACROSS, height_ratios=[1.4] * len(first) + [1.0] * down
+    )
+    panels: list[Axes] = []
+    for name in (*first, *engines):
+        place = len(panels) - len(first)
+        where = grid[len(first) + place // ACROSS, place % ACROSS] if name else grid[0, :]
+        scale = panels[len(first)] if name and place else None
+        axes = drawing.add_subplot(where, sharex=panels[0] if panels else None, sharey=scale)
+        if name:
+            axes.tick_params(
+                labelleft=place % ACROSS == 0, labelbottom=place + ACROSS >= len(engines)
+            )
+        low = LEAST if name else LOWEST / 3.0
+        if not (name and place):  # the others share its scale
+            axes.set(xscale="log", yscale="log", ylim=(low, TOP))
+            error_scale(axes.yaxis, low, 1.0, 2 if name else 4)
+        _panel(axes, lines[engine == name], lines[engine != name])
+        cases = int(table.groupby("set")["cases"].max().sum())
+        words = f"a failure or a wrong outcome in one of {cases} cases" * (not panels)
+        strip_beyond(axes, EDGE, words)
+        axes.set_title(title_of(name) or OTHERS, fontsize=10.5, fontweight="bold")
+        panels.append(axes)
+    drawing.supxlabel("run time of a case, set-up apart  [s]", fontsize=10)
+    drawing.supylabel("median relative error of the peak, of the harder set", fontsize=10)
+    exact = exact_cost(table)
+    own = "" if np.isnan(exact) else f"; the exact solution takes {duration(exact)} a case"
+    drawing.suptitle(f"Error against run time, from coarse to fine{own}", fontsize=12)
+    for axes, name in zip(panels, [*first, *engines], strict=True):
+        around(axes, list(_names(lines[engine == name])), 8.0)
+    return drawing
+
+
+def _panel(axes: Axes, mine: pd.DataFrame, others: pd.DataFrame) -> None:
+    behind = [line[["wall_s", "error"]].to_numpy() for _, line in others.groupby("method")]
+    axes.add_collection(LineCollection(behind, colors=PALE, linewidths=0.8, zorder=0))
+    for name, line in mine.groupby("method", sort=False):
+        style = style_of(str(name))
+        size = 9.0 if style.marker == "*" else 3.2
+        look = {**style.points(size), "linestyle": style.line or "none", "linewidth": style.width}
+        axes.plot(line["wall_s"], line["error"], **look)
+        lost = line[line["wrong"]]
+        broken = {**style.points(4.0), "marker": "x", "markeredgewidth": 1.2}
+        axes.plot(lost["wall_s"], [WRONG] * len(lost), **broken)
+    axes.grid(alpha=0.2)
+
+
+def _names(lines: pd.DataFrame) -> Iterator[Name]:
+    for method, line in lines.groupby("method", sort=False):
+        preset, _, dial = engine_in(str(method))[1].partition(", ")
+        best = line.fillna({"error": WRONG}).sort_values("error").iloc[0]
+        words = dial or (told(preset).short if preset else str(method))
+        yield Name(words, best["wall_s"], best["error"], style_of(str(method)).colour)
+
+
+def draw_scenes(scenes: pd.DataFrame) -> Figure:
+    """Draw what each thing put back into a scene costs and changes, a dot for each engine."""
+    names, engines = list(scenes["scene"].unique()), list(scenes["engine"].unique())
+    drawing = Figure(figsize=(9.6, 1.6 + 0.4 * len(names)), layout="constrained")
+    costs, errors = drawing.subplots(1, 2, sharey=True)
+    for place, engine in enumerate(engines):
+        rows = scenes[scenes["engine"] == engine].set_index("scene").loc[names]
+        levels = np.arange(len(names)) + 0.7 * ((place + 0.5) / len(engines) - 0.5)
+        taken = rows["wall_s"].where(rows["error"].notna())  # what an engine has not takes no time
+        factor, look = taken / taken.iloc[0], engine_style(engine, "").points(6.5)
+        costs.hlines(levels, 1.0, factor, color=look["color"], linewidth=1.2)
+        costs.plot(factor, levels, **look)
+        errors.plot(rows["error"].abs().clip(lower=LOWEST), levels, **look, label=title_of(engine))
+    costs.set_yticks(range(len(names)), names)
+    costs.invert_yaxis()
+    costs.set(xscale="log", xlabel="run time over the scene as it is  [–]")
+    costs.axvline(1.0, color="#555555", linewidth=0.8)
+    costs.set_xticks([0.5, 1, 2, 5, 10, 20], ["½", "1", "2", "5", "10", "20"])
+    costs.set_xticks([], minor=True)
+    errors.set(xscale="log", xlabel="relative error of the peak  [–]")
+    for axes in (costs, errors):
+        axes.grid(alpha=0.25)
+    drawing.legend(loc="outside lower center", ncols=min(len(engines), 5), frameon=False)
+    return drawing
+
+
+def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
+    """Draw the largest error over all cases against the run time of a case.
+
+    Parameters
+    ----------
+    along, published : DataFrame
+        The columns of work-precision.csv, of one engine and of the published ones.
+    """
+    drawing = Figure(figsize=(9.0, 5.4), layout="constrained")
+    axes = drawing.subplots()
+    axes.set(xscale="log", yscale="log", ylim=(1e-8, 30.0))
+    mine, others = joint(along), joint(engines_of(published))
+    others = others[~others["method"].isin(mine["method"])]
+    behind, names = Style(GREY, "-", ".", 0.9), []
+    for lines in (others, mine):
+        for name, line in lines[lines["wall_s"] > 0.0].groupby("method", sort=False):
+            style = behind if lines is others else style_of(str(name))
+            right = (line["failed"] == 0) & np.isfinite(line["max_error"])
+            error = line["max_error"].where(right, WRONG).clip(lower=LOWEST)
+            look = {**style.points(), "linestyle": style.line or "none", "linewidth": style.width}
+            axes.plot(line["wall_s"], error, **look)
+            last = int(np.argmax(line["wall_s"]))
+            colour = "#777777" if lines is others else style.colour
+            at = float(line["wall_s"].iloc[last]), float(error.iloc[last])
+            names.append(Name(called(str(name)), *at, colour))
+    words = "a failure or a wrong outcome"
+    if untimed := sorted(set(mine["method"]) - set(mine.loc[mine["wall_s"] > 0.0, "method"])):
+        words += f"; without a run time: {listed(map(called, untimed))}"
+    strip_beyond(axes, EDGE, words)
+    axes.set_xlabel("run time of a case, set-up apart  [s]")
+    axes.set_ylabel(f"largest relative error of the peak, {mine['cases'].max()} cases  [–]")
+    counts = f" in {others['cases'].max()} cases" if len(others) else ""
+    axes.set_title(f"Error against run time along the step; grey: the published engines{counts}")
+    axes.grid(alpha=0.25)
+    beside(axes, names)
+    return drawing

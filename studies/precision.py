@@ -1,0 +1,599 @@
+"""Error against run time, every method along its own setting; and what a scene costs."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field, fields, replace
+from functools import partial
+from itertools import product
+from pathlib import Path
+from timeit import repeat
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from analytic import peak_ratios, simulate
+from analytic.response import Outcome, Reason, Response
+from engines import ENGINES
+from engines.run.drive import build
+from studies.cases.paper import (
+    HISTORIES,
+    SWEEPS,
+    Case,
+    HistoryCase,
+    free_rocking_window,
+    sweep_cases,
+)
+from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+from studies.kit.jobs import Job, Question, Row, ask, summary
+from studies.kit.options import Running
+from studies.kit.say import duration, part
+from studies.kit.study import Study, Tables
+from studies.measures.costs import STEPPED, best_of
+from studies.measures.differences import posed_cases
+from studies.measures.energy import SAMPLES, energy_drift
+from studies.measures.finer import cheapest_below, joint
+from studies.measures.presets import engine_of, told, uses_of
+from studies.sources.registry import core_sources, scene_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ALONG, SHARES, SCENES, REFERENCE = "precision", "shares", "scenes", "reference"
+"""The tables whose rows are measured."""
+BUDGETS_S = {"full": (0.5, 5.0), "quick": (0.02, 0.15)}
+"""Time [s] spent at most on timing a case with one setting, and on timing a step or a scene."""
+RUNS = 30
+"""Of what the exact solution is timed with in a scene, of which the shortest counts."""
+WORLDS = 20
+"""Scenes built at once, and once more, to see what memory one takes."""
+GRID = np.linspace(0.0, 1.0, 1001)
+"""Of a recorded history, over its duration."""
+CASE = HISTORIES[5][1]
+"""Figure 5-b, of which scenes are timed: one impact before the peak, κ about 5."""
+TYPICAL, NEAR, ALL = "typical", "near overturning", "all"
+"""The sets of cases, and both together."""
+EXACT = "Taylor series"
+"""The method to whose time the others are compared."""
+TARGETS = (0.1, 1e-2, 1e-3, 1e-4)
+"""Errors that somebody may ask of an engine."""
+FINE_TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
+"""Errors that are asked of every method."""
+TOLERANCES = tuple(10.0**-n for n in range(2, 13))
+STEPS = (0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)
+ENGINE_STEPS = (0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)
+ITERATIONS = (2.0, 5.0, 10.0, 50.0, 200.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """A source with one of its options left open; `values` go from cheap to dear, a step is p dt.
+
+    A model in closed form has none. `own` says whether it is among an engine's own settings.
+    """
+
+    source: str
+    setting: str = ""
+    values: tuple[float, ...] = (0.0,)
+    options: Mapping[str, Any] = field(default_factory=dict)
+    own: bool = False
+
+    def options_at(self, value: float) -> dict[str, Any]:
+        """Return the options with the open one at a value."""
+        if self.own:
+            whole = int(value) if float(value).is_integer() else value
+            return {**self.options, "settings": {self.setting: whole}}
+        return {**self.options, **({self.setting: value} if self.setting else {})}
+
+
+PLAIN = {
+    EXACT: Method("exact", "tolerance", (*TOLERANCES, 1e-14, 1e-16)),
+    **{
+        f"SciPy {name}": Method(name.lower(), "rtol", TOLERANCES)
+        for name in ("RK45", "DOP853", "Radau", "LSODA")
+    },
+    "RK4": Method("rk4", "step", STEPS, {"event_tolerance": 1e-13}),
+    "RK4, contact to 1e-6": Method("rk4", "step", STEPS, {"event_tolerance": 1e-6}),
+    "average acceleration": Method(
+        "average-acceleration", "step", STEPS, {"event_tolerance": 1e-13}
+    ),
+    **{f"{name}, closed form": Method(name) for name in ("housner", "modified", "onset-matched")},
+}
+"""Name -> method, of all that are no engines."""
+
+
+def methods_of(sources: Iterable[str]) -> dict[str, Method]:
+    """Return the methods of sources by their names; of an engine without a preset those of all."""
+    names = list(sources)
+    found = {name: method for name, method in PLAIN.items() if method.source in names}
+    iterated = {}
+    for engine, _, preset in (name.partition(":") for name in names):
+        if engine not in ENGINES:
+            continue
+        for use in [ENGINES[engine].preset(preset)] if preset else uses_of(engine):
+            source, knob = f"{engine}:{use.name}", use.accuracy_knob
+            setting, values = knob or ("step", ENGINE_STEPS)
+            found[f"{engine} {use.name}"] = Method(source, setting, values, own=knob is not None)
+            if use.name == "fixed" and use.takes(iterations=1):
+                method = Method(source, "iterations", ITERATIONS, {"step": 1e-3}, own=True)
+                iterated[f"{engine} fixed, iterations"] = method
+    return found | iterated
+
+
+def known_methods() -> dict[str, Method]:
+    """Return every method by its name, of all engines."""
+    return methods_of([*(method.source for method in PLAIN.values()), *ENGINES])
+
+
+def omissions() -> dict[str, dict[str, Any]]:
+    """Return the options that put back what a scene leaves out, by the name of that; none first."""
+    window = free_rocking_window(CASE.block, CASE.motion)
+    return {
+        "as it is": {},
+        "free body instead of planar": {"settings": {"planar": False}},
+        "full box instead of corners": {"settings": {"geometry": "box"}},
+        "base moving in the world": {"frame": "world"},
+        "8/p of free rocking after the pulse": {"duration": window},
+        "the same, recorded as a history": {"duration": window, "times": window * GRID},
+        "steps all equal": {"preset": "fixed"},
+    }
+
+
+def references() -> dict[str, Callable[[], object]]:
+    """Return what the exact solution is timed with: one response, or the whole sweep."""
+    block, motion = CASE.block, CASE.motion
+    window = free_rocking_window(block, motion)
+    watched = partial(simulate, block, motion, duration=window)
+    cases = [case for case in sweep_cases(SWEEPS) if case.width_m == 0.5]
+    alike = posed_cases(pd.DataFrame([asdict(case) for case in cases]))
+    return {
+        "one response, to its peak": partial(simulate, block, motion),
+        "8/p of free rocking after the pulse": watched,
+        "the same, recorded as a history": partial(watched, times=window * GRID),
+        "480 cases of the sweep": partial(peak_ratios, *alike),
+        "960 cases, half of them copies by similarity": partial(peak_ratios, *np.tile(alike, 2)),
+        "480 cases, one by one in Python": lambda: [simulate(c.block, c.motion) for c in cases],
+    }
+
+
+def jobs(sources: Iterable[str], quick: bool) -> list[Job]:
+    """Return a job for each method, setting and case; then those of steps and of scenes."""
+    names = tuple(sources)
+    brief_s, long_s = BUDGETS_S["quick" if quick else "full"]
+    found, sets = [], chosen_cases(quick)
+    for name, method in methods_of(names).items():
+        # quick: every other setting, without the two dearest
+        values = method.values[: max(len(method.values) - 2, 1) : 2] if quick else method.values
+        for value, (kind, cases) in product(values, sets.items()):
+            for case in cases:
+                window = free_rocking_window(case.block, case.motion)
+                times = np.linspace(0.0, window, SAMPLES)
+                labels = {"table": ALONG, "method": name, "value": value, "set": kind}
+                found.append(
+                    Job(
+                        labels={**labels, **asdict(case), "budget_s": brief_s},
+                        case=question(case, duration=window, times=times),
+                        source=method.source,
+                        options=method.options_at(value),
+                    )
+                )
+    engines = dict.fromkeys(engine_of(name) for name in names if engine_of(name) in ENGINES)
+    alone = [{"table": SHARES, "engine": engine} for engine in engines]
+    alone += [
+        {"table": SCENES, "engine": engine, "scene": left_out}
+        for engine, left_out in product(engines, omissions())
+    ]
+    if "exact" in names:
+        alone += [{"table": REFERENCE, "scene": name} for name in references()]
+    return found + [
+        Job(
+            labels={**it, "budget_s": long_s}, case=question(CASE), source=it.get("engine", "exact")
+        )
+        for it in alone
+    ]
+
+
+def question(case: Case | HistoryCase, **observed: Any) -> Question:
+    """Return what a case asks."""
+    return Question(system=case.block, motion=case.motion, **observed)
+
+
+def measure(job: Job) -> Row:
+    """Return what a job's table has of it."""
+    of = {ALONG: along, SHARES: share, SCENES: put_back, REFERENCE: reference}
+    return of[job.labels["table"]](job)
+
+
+def along(job: Job) -> Row:
+    """Run a job once with all records, then time it without any: to its peak only.
+
+    A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
+    """
+    recorded = ask(job)
+    plain = replace(job, case=replace(job.case, duration=None, times=None))
+
+    def timed() -> Response:
+        start = time.perf_counter()
+        response = ask(plain)
+        # by the same clock for all sources, of which only engines know their own
+        return replace(response, setup_s=time.perf_counter() - start - response.wall_s)
+
+    best, runs = best_of(timed, job.labels["budget_s"])
+    found, late, exact = recorded, math.nan, math.nan
+    if best.outcome is Outcome.FAILED:
+        found = best
+    elif recorded.outcome is not Outcome.FAILED:
+        changed = {
+            name: getattr(best, name) for name in ("outcome", "peak_ratio", "steps", "wall_s")
+        }
+        found = replace(recorded, **changed)
+        right = simulate(job.case.system, job.case.motion, duration=job.case.duration)
+        late, exact = impact_error(recorded, right, job.case.system.p), right.peak_ratio
+    return {
+        **summary(found),
+        "setup_s": round(best.setup_s, 9),
+        "runs": runs,
+        "error": abs(found.peak_ratio / exact - 1.0),
+        "impact_error": late,
+        "energy_drift": energy_drift(job.case.system, job.case.motion, recorded),
+    }
+
+
+def impact_error(found: Response, exact: Response, p: float) -> float:
+    """Return the largest error of the first impact times [1/p]; inf where one is missing."""
+    mine, right = (
+        [impact.time * p for impact in response.impacts[:COMPARED_IMPACTS]]
+        for response in (found, exact)
+    )
+    if len(mine) < len(right):
+        return math.inf
+    return max((abs(a - b) for a, b in zip(mine, right, strict=False)), default=0.0)
+
+
+def share(job: Job) -> Row:
+    """Return how long a step takes, and of that the engine's own [s].
+
+    Of the latter a clock around it tells while Python takes the steps; nan where none fits there.
+    """
+    ask(job)  # the first may compile, which would spend the whole budget
+    whole, _ = best_of(partial(ask, job), job.labels["budget_s"])
+    if whole.outcome is Outcome.FAILED:
+        return {**summary(whole), "step_s": math.nan, "engine_s": math.nan}
+    interpreted = replace(job, options={"compiled": False})
+    tick_s = 2.0 * min(repeat(time.perf_counter, number=1000, repeat=20)) / 1000.0
+    own = dict[float, float]()
+
+    def clocked() -> Response:
+        with clock(job.asked.engine) as spent:
+            response = ask(interpreted)
+        own[response.wall_s] = sum(spent) - tick_s * len(spent)
+        return response
+
+    engine_s = math.nan
+    if job.asked.declared.own_step:
+        least, _ = best_of(clocked, job.labels["budget_s"])
+        engine_s = max(own[least.wall_s] / least.steps, 0.0)
+    return {**summary(whole), "step_s": whole.wall_s / whole.steps, "engine_s": engine_s}
+
+
+@contextmanager
+def clock(engine: str) -> Iterator[list[float]]:
+    """Put a clock around an engine's own step while the context lasts; yield its times [s]."""
+    library, _, path = ENGINES[engine].own_step.partition(":")
+    *owners, name = path.split(".")
+    owner: Any = functools.reduce(getattr, owners, importlib.import_module(library))
+    step, spent = getattr(owner, name), []
+
+    def timed(*arguments: Any, **named: Any) -> Any:
+        start = time.perf_counter()
+        try:
+            return step(*arguments, **named)
+        finally:
+            spent.append(time.perf_counter() - start)
+
+    setattr(owner, name, timed)
+    try:
+        yield spent
+    finally:
+        setattr(owner, name, step)
+
+
+def put_back(job: Job) -> Row:
+    """Time a scene with what it leaves out; an engine that has no such thing fails."""
+    engine, options = job.asked.declared, omissions()[str(job.labels["scene"])]
+    preset, own = options.pop("preset", ""), options.get("settings", {})
+    observed = {name: options.pop(name) for name in ("duration", "times") if name in options}
+    missing = ""
+    if preset and preset not in [use.name for use in engine.presets]:
+        missing = f"preset {preset!r}"
+    elif not job.asked.used.takes(**own):
+        missing = f"setting of {', '.join(own)} to put back"
+    else:
+        source = f"{engine.name}:{preset}" if preset else job.source
+        case = replace(job.case, **observed)
+        job = replace(job, case=case, source=source, options=options)
+
+    def timed() -> Response:
+        if missing:
+            words = f"not available: {engine.name} has no {missing}"
+            return Response.failure(words, reason=Reason.UNAVAILABLE)
+        return ask(job)
+
+    found, runs = best_of(timed, job.labels["budget_s"])
+    exact = simulate(CASE.block, CASE.motion).peak_ratio
+    return {
+        **summary(found),
+        "runs": runs,
+        "step_s": found.wall_s / max(found.steps, 1),
+        "setup_s": found.setup_s,
+        "memory_kib": math.nan if found.outcome is Outcome.FAILED else memory_of(job),
+        "error": found.peak_ratio / exact - 1.0,
+    }
+
+
+def memory_of(job: Job) -> float:
+    """Return the memory [KiB] of a built scene: what WORLDS take after as many; else nan."""
+    status, case = Path("/proc/self/statm"), job.case
+    if not status.exists():
+        return math.nan
+    observed = {"duration": case.duration, "times": case.times}
+    scene = scene_of(case.system, case.motion, job.asked.preset, **observed, **job.options)
+    worlds, pages = [], []
+    for _ in range(2):  # the first may take what was used before, and is free again
+        worlds += [build(job.asked.declared, scene) for _ in range(WORLDS)]
+        pages.append(int(status.read_text().split()[1]))
+    for world in worlds:
+        world.close()
+    return 4.0 * max(pages[1] - pages[0], 0) / WORLDS
+
+
+def reference(job: Job) -> Row:
+    """Time what the exact solution leaves out: one response, or the whole sweep."""
+    wall_s = min(repeat(references()[str(job.labels["scene"])], number=1, repeat=RUNS))
+    return {**summary(ask(job)), "wall_s": wall_s}
+
+
+COLUMNS = {
+    ALONG: [
+        *("method", "value", "set", "figure", "pulse", "excess_g", "aspect", "width_m"),
+        *("omega_over_p", "budget_s", "source", "outcome", "peak_ratio", "impacts", "steps"),
+        *("wall_s", "message", "setup_s", "runs", "error", "impact_error", "energy_drift"),
+    ],
+    SHARES: ["engine", "step_s", "engine_s"],
+    SCENES: [
+        *("engine", "scene", "outcome", "wall_s", "runs", "steps"),
+        *("step_s", "setup_s", "memory_kib", "error", "message"),
+    ],
+    REFERENCE: ["scene", "wall_s"],
+}
+WHOLE = ("figure", "aspect", "runs")
+"""Columns that not every table has, of whole numbers."""
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return the rows of each table, and a line for each method, setting and set of cases."""
+    found = {}
+    for name, columns in COLUMNS.items():
+        table = rows[rows["table"] == name].reindex(columns=columns)
+        found[name] = table.astype({column: int for column in WHOLE if column in columns})
+    return {**found, "work-precision": work_precision(found[ALONG])}
+
+
+def work_precision(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each set, method and setting: errors over the cases, cost of one case."""
+    finest = rows.groupby(["method", *CASES, "set"])["peak_ratio"].transform("last")
+    failed = rows["outcome"] == Outcome.FAILED.value
+    own = (rows["peak_ratio"] / finest - 1.0).abs().mask(failed)
+    length = [Case(**{name: row[name] for name in CASES}).motion.duration for row in
+              rows[CASES].to_dict("records")]  # fmt: skip
+    groups = rows.assign(own_error=own, failed=failed, pulse_s=length).groupby(
+        ["set", "method", "value"], sort=False
+    )
+    table = groups.agg(
+        cases=("error", "size"),
+        failed=("failed", "sum"),
+        median_error=("error", "median"),
+        max_error=("error", "max"),
+        **{name: (name, "median") for name in ("own_error", "impact_error", "energy_drift")},
+        **{name: (name, "mean") for name in ("steps", "wall_s", "setup_s")},
+        runs=("runs", "min"),
+        pulse_s=("pulse_s", "mean"),
+    ).reset_index()
+    table["real_time_factor"] = table.pop("pulse_s") / table["wall_s"]
+    return table
+
+
+CASES = [item.name for item in fields(Case)]
+
+
+def engines_of(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the lines of the engines along their steps."""
+    methods = known_methods()
+    along = [it for it in methods if it not in PLAIN and methods[it].setting == "step"]
+    return table[table["method"].isin(along)]
+
+
+def exact_cost(lines: pd.DataFrame) -> float:
+    """Return the mean time [s] of a case by the exact solution at its tightest; nan without it."""
+    exact = lines[lines["method"] == EXACT]
+    tight = exact[exact["value"] == exact["value"].min()]
+    return float((tight["wall_s"] * tight["cases"]).sum() / (tight["cases"].sum() or math.nan))
+
+
+def choices(table: pd.DataFrame) -> dict[tuple[float, str], dict[str, Any]]:
+    """Return the cheapest setting of an engine below each target, on typical cases and on all.
+
+    (target, TYPICAL or ALL) -> method, value, and setting: both in words; wall_s: mean time of a
+    case [s], and over_exact: that over the exact solution's, both over these cases; runs;
+    typical_error, near_error: its largest errors, inf where an outcome is wrong. There is nothing
+    where no setting reaches the target.
+    """
+    engines, methods = engines_of(table), known_methods()
+    errors = engines.set_index(["method", "value", "set"])["max_error"]
+    among = {
+        TYPICAL: (engines[engines["set"] == TYPICAL], table[table["set"] == TYPICAL]),
+        ALL: (joint(engines), table),
+    }
+    found = {}
+    for target, (cases, (lines, timed)) in product(TARGETS, among.items()):
+        if (best := cheapest_below(lines, target)) is not None:
+            at = best["method"], best["value"]
+            name = {"step": "p dt"}.get(setting := methods[at[0]].setting, setting)
+            found[target, cases] = {
+                **best[["method", "value", "wall_s", "runs"]],
+                "setting": f"{at[0]} at {name} = {at[1]:g}",
+                "over_exact": best["wall_s"] / exact_cost(timed),
+                "typical_error": float(errors.get((*at, TYPICAL), math.nan)),
+                "near_error": float(errors.get((*at, NEAR), math.nan)),
+            }
+    return found
+
+
+def over_targets(table: pd.DataFrame, column: str) -> pd.DataFrame:
+    """Return a column of each method's cheapest setting below some errors, an error a column."""
+    found = {
+        name: {f"{target:g}": best[column] for target in FINE_TARGETS
+               if (best := cheapest_below(lines, target)) is not None}
+        for name, lines in table.groupby("method", sort=False)
+    }  # fmt: skip
+    shown = pd.DataFrame.from_dict(found, "index", columns=[*map("{:g}".format, FINE_TARGETS)])
+    return shown.dropna(how="all").rename_axis("method").reset_index()
+
+
+def finest(table: pd.DataFrame) -> pd.DataFrame:
+    """Return each method at its smallest median error, with its order and how many cases failed."""
+    columns = ["method", "value", "median_error", "max_error", "impact_error", "energy_drift"]
+    columns += ["steps", "wall_s", "runs", "setup_s"]
+    return pd.DataFrame(
+        {
+            **group.sort_values("median_error").iloc[0][columns],
+            "order": observed_order(group),
+            "failed": group["failed"].sum(),
+        }
+        for _, group in table.groupby("method", sort=False)
+    )
+
+
+def observed_order(line: pd.DataFrame) -> float:
+    """Return the order of the median error in a method's step; nan if unclear.
+
+    A line through the logarithms, over the settings whose error is above three times the floor, and
+    that are coarser than the one that reaches it: beyond, rounding makes the error grow again.
+    """
+    error = line["median_error"].where((line["failed"] == 0) & np.isfinite(line["median_error"]))
+    floor = error.min()
+    reached = line["value"][error == floor].max()
+    used = error.between(3.0 * floor, 0.3, inclusive="neither") & (line["value"] > reached)
+    if known_methods()[line["method"].iloc[0]].setting != "step" or used.sum() < 3:
+        return math.nan
+    return float(np.polyfit(np.log(line["value"][used]), np.log(error[used]), 1)[0])
+
+
+def title_of(method: str) -> str:
+    """Return how a method is called beside others: an engine by its title, with its preset."""
+    engine, _, varied = method.partition(" ")
+    if engine not in ENGINES:
+        return method
+    preset, comma, dial = varied.partition(", ")
+    return f"{ENGINES[engine].title}, {told(preset).short}{comma}{dial}"
+
+
+def finding(tables: Tables) -> str:
+    """Say with which engine the smallest error is cheapest, and how much the exact one costs."""
+    table = tables["work-precision"]
+    exact, found = exact_cost(table), choices(table)
+    if engines_of(table).empty:
+        return f"The exact solution takes {duration(exact)} a case."
+    if not found:
+        return f"No setting of an engine predicts every typical peak within {part(TARGETS[0])}."
+    asked = ALL if any(cases == ALL for _, cases in found) else TYPICAL
+    target = min(target for target, cases in found if cases == asked)
+    best, over = found[target, asked], ""
+    if exact > 0.0:
+        over = f", {best['over_exact']:.3g} times as long as the exact solution takes"
+    return (
+        f"{title_of(best['method'])}, predicts every {'typical ' * (asked == TYPICAL)}peak within "
+        f"{part(target)} in {duration(best['wall_s'])} a case{over}."
+    )
+
+
+def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+    """Return what each error costs, where the time of a step goes, and what a scene costs."""
+    table, scenes, shares, reference = (
+        tables[name] for name in ("work-precision", SCENES, SHARES, REFERENCE)
+    )
+    typical = table[table["set"] == TYPICAL]
+    costs = over_targets(typical, "wall_s")
+    costs[costs.columns[1:]] /= exact_cost(typical)
+    cost = scenes["wall_s"] / scenes.groupby("engine")["wall_s"].transform("first")
+    missing = scenes["message"] != ""
+    counts = reference["scene"].str.extract(r"^(\d+) cases", expand=False).astype(float).fillna(1.0)
+    found = {
+        "The cheapest setting of an engine below an error, as with every finer one": pd.DataFrame(
+            {"below": target, "cases": cases, **best}
+            for (target, cases), best in choices(table).items()
+        ).drop(columns=["method", "value"], errors="ignore"),
+        "The cheapest setting of each method below an error of typical peaks": over_targets(
+            typical, "value"
+        ),
+        f"Its run time over that of the {EXACT} at its tightest": costs,
+        "Typical cases at the setting with the smallest median error": finest(typical),
+        f"Time of a step, and over the engine's own part of it. {STEPPED}": shares.assign(
+            over_engine=shares["step_s"] / shares["engine_s"]
+        ),
+        "What a scene leaves out, put back one at a time; cost: run time over the scene as it is": (
+            scenes.assign(cost=cost).loc[~missing].drop(columns="message")
+        ),
+        "What an engine cannot put back": scenes.loc[missing, ["engine", "scene", "message"]],
+        "What the exact solution leaves out; case_us: microseconds a case": reference.assign(
+            case_us=1e6 * reference["wall_s"] / counts
+        ),
+    }
+    return {title: table for title, table in found.items() if len(table)}
+
+
+def figures(tables: Tables) -> Mapping[str, Figure]:
+    """Draw error against run time, and what each thing put back into a scene costs and changes."""
+    from studies.drawing.precision import draw_precision, draw_scenes
+
+    drawn = {"precision": draw_precision(tables["work-precision"])}
+    return drawn | ({"cost": draw_scenes(tables[SCENES])} if len(tables[SCENES]) else {})
+
+
+STUDY = Study(
+    name="precision",
+    question="Which error does which run time buy, and what is not needed?",
+    help="""Error against run time: every method along its own setting, on the same cases.
+
+The setting is a tolerance, a step or the iterations of a solver; 12 cases have typical peaks and 12
+are near overturning. A time is the best of five runs or more, until the shortest two agree, or of
+fewer where these take longer than half a second: how many is a column. Building and compiling are
+apart. Besides, where the time of a step goes, and what each thing costs that a scene leaves out: a
+free body, a full box, a moving base, a recorded history, ... A compiled loop over mj_step takes
+MuJoCo's steps; Python takes all others. With more than one of --jobs they slow each other down. It
+takes about 10 minutes.""",
+    sources=(*dict.fromkeys(method.source for method in PLAIN.values()), *core_sources()),
+    quick="Fewer cases and settings, shorter timing: some one and a half minutes.",
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    needed=lambda rows: [row for row in rows if row["table"] == ALONG],
+    captions={
+        "precision": "Median error of the peak over run time, a panel for each engine and a line "
+        "for each of its presets from coarse to fine, all other methods pale behind; in the strip "
+        "above, settings with which a case fails or has a wrong outcome.",
+        "cost": "What each thing put back into a scene does to run time, on the left, and to the "
+        "error, on the right.",
+    },
+    running=Running(jobs=1),
+)
+command = STUDY.command()
