@@ -8,23 +8,6 @@ import pandas as pd
 import pytest
 from commanding import refused
 
-<<<<<<< HEAD
-from analytic import Outcome, simulate
-from engines import core_engines, installed_engines
-from studies import respond
-from studies.cases.paper import HISTORIES
-from studies.cases.selection import chosen_cases
-from studies.measures.energy import energy_drift
-from studies.old.jobs import ask
-from studies.precision.figure import style_of
-from studies.precision.methods import METHODS, methods_of
-from studies.precision.report import (
-    cheapest,
-    finest,
-    over_targets,
-    with_errors,
-    work_precision,
-=======
 from analytic.response import Outcome, Response
 from engines import ENGINES, Scene, core_engines, installed_engines
 from engines.run.drive import run as drive
@@ -46,7 +29,6 @@ MOST_S = 4.0 * LEAST_S
         ([1.3, 1.0, 1.03, 1.3, 1.01], LEAST_S, True),
         ([1.3], MOST_S, True),  # nothing more may be spent
     ],
->>>>>>> 563a14b5 (precision is one file: its rows are measured where they are asked, and what a scene costs are rows of it, too)
 )
 def test_a_minimum_is_known_once_it_came_twice(times, spent_s, known):
     assert enough(times, spent_s, MOST_S) is known
@@ -73,16 +55,6 @@ def line(method, value, error, wall_s, kind="typical", failed=0):
     return {**known, "median_error": error / 3.0, "max_error": error, "wall_s": wall_s, "runs": 5}
 
 
-<<<<<<< HEAD
-def test_energy_drifts_with_the_method_that_loses_it():
-    drifts = {
-        job.labels["value"]: energy_drift(job.block, job.motion, ask(job, job.asked))
-        for job in precision_jobs(False, ())
-        if (job.labels["method"], job.labels["figure"]) == ("average acceleration", 8)
-        and job.labels["value"] in (0.1, 1e-3)
-    }
-    assert drifts[0.1] > 10 * drifts[1e-3] > 0
-=======
 def test_the_cheapest_setting_holds_with_every_finer_one_and_is_compared_to_the_exact_time():
     lines = [line("Taylor series", value, value, 1e-5) for value in (1e-2, 1e-16)]
     # a coarse step may be lucky, and a failure is no candidate, however cheap
@@ -101,7 +73,6 @@ def test_the_cheapest_setting_holds_with_every_finer_one_and_is_compared_to_the_
     said = precision.finding({"work-precision": table})
     assert said.startswith("MuJoCo") and "4 ms" in said and "400" in said and "typical" in said
     assert "10 µs" in precision.finding({"work-precision": table.head(2)})
->>>>>>> 563a14b5 (precision is one file: its rows are measured where they are asked, and what a scene costs are rows of it, too)
 
 
 def test_the_order_is_that_of_the_steps_above_the_floor():
@@ -119,7 +90,7 @@ def few(names, **labels):
 
 def test_a_wrong_outcome_is_an_infinite_error_and_each_table_has_its_rows():
     asked = few(["exact", "housner"], set="near overturning", figure=8)
-    asked += few(["mujoco"], table="shares") + few(["pymunk"], scene="free body instead of planar")
+    asked += few(["pybullet"], table="shares") + few(["pymunk"], scene="free body instead of planar")
     asked += few(["mujoco:fixed"], scene="free body instead of planar")
     rows = run(asked, measure)
     tables = STUDY.tabulate(pd.DataFrame(rows))
