@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from analytic import peak_ratios, simulate
+from analytic import RigidBlock, peak_ratios, simulate
 from analytic.response import Outcome, Reason, Response
 from engines import ENGINES
 from engines.run.drive import build
@@ -215,7 +215,8 @@ def along(job: Job) -> Row:
 
     A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
     """
-    recorded = ask(job)
+    recorded, block = ask(job), job.case.system
+    assert isinstance(block, RigidBlock)
     plain = replace(job, case=replace(job.case, duration=None, times=None))
 
     def timed() -> Response:
@@ -233,15 +234,15 @@ def along(job: Job) -> Row:
             name: getattr(best, name) for name in ("outcome", "peak_ratio", "steps", "wall_s")
         }
         found = replace(recorded, **changed)
-        right = simulate(job.case.system, job.case.motion, duration=job.case.duration)
-        late, exact = impact_error(recorded, right, job.case.system.p), right.peak_ratio
+        right = simulate(block, job.case.motion, duration=job.case.duration)
+        late, exact = impact_error(recorded, right, block.p), right.peak_ratio
     return {
         **summary(found),
         "setup_s": round(best.setup_s, 9),
         "runs": runs,
         "error": abs(found.peak_ratio / exact - 1.0),
         "impact_error": late,
-        "energy_drift": energy_drift(job.case.system, job.case.motion, recorded),
+        "energy_drift": energy_drift(block, job.case.motion, recorded),
     }
 
 

@@ -1,5 +1,7 @@
 """Cases chosen from the sweep for studies that cannot afford all of it."""
 
+from functools import cache
+
 import numpy as np
 
 from analytic import peak_ratios
@@ -9,6 +11,7 @@ COMPARED_IMPACTS = 3
 """Impacts of each that are compared."""
 
 
+@cache
 def chosen_cases(quick: bool) -> dict[str, list[Case]]:
     """Return the cases of each set: "typical", with peaks near 0.3, and "near overturning".
 
@@ -16,21 +19,15 @@ def chosen_cases(quick: bool) -> dict[str, list[Case]]:
     """
     chosen: dict[str, list[Case]] = {"typical": [], "near overturning": []}
     for figure in (6, 8) if quick else (6, 7, 8, 9):
+        known = [case for case in sweep_cases([figure]) if case.width_m == 0.5]
+        posed = [
+            (case.block.alpha, case.amplitude_g, case.omega_over_p, case.motion.half_cycles)
+            for case in known
+        ]
+        peaks, _ = peak_ratios(*np.array(posed, np.float64).T)
         for aspect in (2, 3, 4):
-            cases = [
-                case
-                for case in sweep_cases([figure])
-                if case.aspect == aspect and case.width_m == 0.5
-            ]
-            peaks = np.array([_exact_peak(case) for case in cases])
-            survivors = np.where(np.isfinite(peaks), peaks, -1.0)
-            chosen["typical"].append(cases[int(np.argmin(np.abs(survivors - 0.3)))])
-            chosen["near overturning"].append(cases[int(np.argmax(survivors))])
+            mine = np.isfinite(peaks) & np.array([case.aspect == aspect for case in known])
+            survivors = np.where(mine, peaks, -np.inf)
+            chosen["typical"].append(known[int(np.argmin(np.abs(survivors - 0.3)))])
+            chosen["near overturning"].append(known[int(np.argmax(survivors))])
     return chosen
-
-
-def _exact_peak(case: Case) -> float:
-    block = case.block
-    half_cycles = case.motion.half_cycles
-    peak, _ = peak_ratios(block.alpha, case.amplitude_g, case.omega_over_p, half_cycles)
-    return float(peak)
