@@ -13,13 +13,13 @@ from studies.cases.paper import sweep_cases
 from studies.kit.arguments import figures as some_figures
 from studies.kit.jobs import Job, Question
 from studies.kit.options import EffortOptions
-from studies.kit.say import capital, listed, out_of, part
+from studies.kit.say import capital, out_of, part
 from studies.kit.study import Study, Tables
 from studies.measures.claims import Finding, claim, table_of
 from studies.measures.differences import summarize, with_reference, worst_cases
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.wrongness import KINDS
-from studies.sources.registry import core_sources, resolve
+from studies.sources.registry import core_sources
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,7 +65,8 @@ def tabulate(rows: pd.DataFrame) -> Tables:
 
 def over_all(summary: pd.DataFrame) -> pd.DataFrame:
     """Return the lines of a summary that are about all its figures."""
-    return summary[summary["figure"] == summary["figure"].iloc[-1]].reset_index(drop=True)
+    lines: pd.DataFrame = summary[summary["figure"] == summary["figure"].iloc[-1]]
+    return lines.reset_index(drop=True)
 
 
 def preset_table(lines: pd.DataFrame) -> pd.DataFrame:

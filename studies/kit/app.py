@@ -88,10 +88,10 @@ def run(commands: Mapping[str, str], arguments: list[str]) -> int:
         code = _answer(commands, arguments)
         sys.stdout.flush()
     except KeyboardInterrupt as stop:
-        words = [each for each in stop.args if isinstance(each, str)]
+        kept = [each for each in stop.args if isinstance(each, str)]
         number = next((each for each in stop.args if isinstance(each, int)), signal.SIGINT)
         kind = "interrupted" if number == signal.SIGINT else signal.Signals(number).name
-        say.say("; ".join([f"rocking: {kind}", *words]))
+        say.say("; ".join([f"rocking: {kind}", *kept]))
         return 128 + number
     except (BrokenPipeError, SystemExit) as stop:
         # what sets the help makes another of it

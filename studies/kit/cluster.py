@@ -7,6 +7,7 @@ which it could start no process: dask worker ADDRESS --no-nanny --nthreads 1.
 import multiprocessing
 import socket
 from collections.abc import Sequence
+from queue import Empty, SimpleQueue
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -56,7 +57,7 @@ def on_cluster(address: str, limit_s: float, jobs: Sequence[Job], measure: Measu
         If there is no scheduler, no worker, or one that would make other rows.
     """
     try:
-        from distributed import Client, wait
+        from distributed import Client
 
         place = urlsplit(address)  # Dask itself would try again and again where nobody listens
         socket.create_connection((place.hostname or "", place.port or 0), CONNECT_S).close()
@@ -76,18 +77,20 @@ def on_cluster(address: str, limit_s: float, jobs: Sequence[Job], measure: Measu
             client.submit(_work, [jobs[n] for n in part], measure, limit_s, pure=False): part
             for part in parts
         }
-        left = set(tasks)
+        ended = SimpleQueue[Any]()
+        for task in tasks:
+            task.add_done_callback(ended.put)
+        left = len(tasks)
         while left:
             try:
-                ended = wait(left, timeout=ALONE_S, return_when="FIRST_COMPLETED").done
-            except TimeoutError as error:
+                task = ended.get(timeout=ALONE_S)
+            except Empty:
                 if client.nthreads():
                     continue
                 words = "it has no worker any more"
-                raise BadInputError(f"--cluster is {address!r}; {words}") from error
-            left -= ended
-            for task in ended:
-                yield from _rows_of(task, [(n, jobs[n]) for n in tasks[task]], measure)
+                raise BadInputError(f"--cluster is {address!r}; {words}") from None
+            left -= 1
+            yield from _rows_of(task, [(n, jobs[n]) for n in tasks[task]], measure)
 
 
 def _rows_of(task: Any, part: Sequence[tuple[int, Job]], measure: Measure) -> Rows:

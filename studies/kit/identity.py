@@ -83,9 +83,9 @@ def files_of(module: str) -> frozenset[Path]:
             continue
         found.add(file)
         for node in ast.parse(file.read_bytes()).body:
-            if isinstance(node, ast.ImportFrom) and (name := node.module or "")[:8] == "studies.":
-                if name.split(".")[1] not in ASIDE:
-                    pending += [name, *(f"{name}.{each.name}" for each in node.names)]
+            name = node.module or "" if isinstance(node, ast.ImportFrom) else ""
+            if name.startswith("studies.") and name.split(".")[1] not in ASIDE:
+                pending += [name, *(f"{name}.{each.name}" for each in node.names)]
     return frozenset(found)
 
 

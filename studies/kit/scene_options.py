@@ -274,7 +274,7 @@ def refuse_endless(
     step: float | None = None,
     dt: float | None = None,
 ) -> None:
-    """Refuse what no computer sees the end of: a time [s], and steps p dt or [s] that were given."""
+    """Refuse what no computer sees the end of: a time [s], and steps, p dt or [s]."""
     most_s = MOST_TIME / block.p
     if watched_s > most_s:
         asked = (

@@ -156,7 +156,8 @@ class Store:
         rows = read_table(next(path for path in places if path.is_file())).to_dict("records")
         keys = {_name_of({**job.labels, "source": job.source}): key for key, job in jobs.items()}
         labels = [*next(iter(jobs.values())).labels, "source"] if jobs else []
-        for row in rows:
+        for line in rows:
+            row = {str(name): value for name, value in line.items()}
             name = _name_of({label: row.get(label) for label in labels})
             if name not in keys:
                 raise FolderError(self.folder, f"it also holds results of {_said(row, labels)}")

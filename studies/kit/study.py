@@ -93,7 +93,7 @@ class Study:
 
     def command(self) -> Callable[..., int]:
         """Return its command: the function whose parameters are the command's options."""
-        taken = {"out": (Out, inspect.Parameter.empty)}
+        taken: dict[str, tuple[Any, Any]] = {"out": (Out, inspect.Parameter.empty)}
         if self.options is not None:
             taken["options"] = (self.options, self.options())
         if self.sources:

@@ -17,7 +17,8 @@ from engines.disclosure import Help
 from engines.parts.factors import AS_BEST, BEST, DEFAULT, LEFT_OUT
 from engines.registry import OWN
 from studies.kit.say import capital, duration, listed, part
-from studies.kit.store import NOT_INSTALLED, engines_of, provenance_of, whole_runs
+from studies.kit.identity import NOT_INSTALLED
+from studies.kit.store import engines_of, provenance_of, whole_runs
 from studies.kit.tables import table_in
 from studies.measures.costs import cost_text
 from studies.measures.presets import engine_of, in_order, preset_of, told
@@ -278,6 +279,5 @@ def _better(lines: pd.DataFrame, engine: str, plain: Line) -> list[dict[Any, Any
         & (varied["median_error"] < plain["median_error"])
     ].sort_values("median_error")
     alike = better["median_error"].map("{:.3e}".format)  # two names of one thing
-    return (
-        better[~alike.duplicated() & ~better["factor"].duplicated()].head(TRIED).to_dict("records")
-    )
+    best: pd.DataFrame = better[~alike.duplicated() & ~better["factor"].duplicated()]
+    return best.head(TRIED).to_dict("records")
