@@ -1,0 +1,150 @@
+"""A film of one scene: several sources side by side, on the same shaken base and clock."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from analytic.response import Outcome
+from analytic.slide import SlidingBlock
+from studies.cases.paper import Case, free_rocking_window
+from studies.cases.refusal import BadInputError
+from studies.kit.arguments import Place, Positive, Sources, check_writable, refuse_given, required
+from studies.kit.jobs import Job, Question, Row, ask, summary
+from studies.kit.options import Computing, Yours
+from studies.kit.run import Place as Where
+from studies.kit.run import exit_code, here, place_of, run
+from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless
+from studies.kit.store import check
+from studies.sources.registry import core_sources
+
+DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
+OF_A_SLIDE = tuple(name for name in DEFAULT_SOURCES if name != "housner")
+"""By default asked of a block that slides, which has no linearization."""
+FRAMES_A_SECOND, MOST_FRAMES, MOST_SOURCES = 25, 1500, 8
+"""At most a minute of film, which holds up to 1 GB of memory while it is drawn."""
+CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
+
+
+def command(
+    *,
+    out: Place,
+    width: Width | None = None,
+    height: Height | None = None,
+    excitation: Excitation = Excitation(),  # noqa: B008
+    standing: Standing = Standing(),  # noqa: B008
+    yours: Yours = Yours(),  # noqa: B008
+    results: Place | None = None,
+    sources: Sources = DEFAULT_SOURCES,
+    slower: Positive = 1.0,
+    computing: Computing = Computing(),  # noqa: B008
+) -> int:
+    """A film of one block, frame or slide, as several sources move it side by side.
+
+    Parameters
+    ----------
+    out
+        The film: a .gif, or an .mp4 (which needs the extra [video]).
+    results
+        Instead of a block and what happens to it: results of `rocking sweep`, of which the case is
+        shown in which the sources differ most.
+    sources
+        As in `rocking compare`, at most 8; the models are not asked by default where nothing rocks.
+    slower
+        Seconds of film for a second of shaking.
+    """
+    if standing.scene == "slide" and sources == DEFAULT_SOURCES:
+        sources = OF_A_SLIDE
+    check_film(out)
+    if len(sources) > MOST_SOURCES:
+        raise BadInputError(f"--sources are {len(sources)}; they must be at most {MOST_SOURCES}")
+    if results is None:
+        width, height = required("give them, or --results", width=width, height=height)
+        system = standing.system(width, height, yours.friction)
+        motion, start = standing.pose(system, excitation)
+    else:
+        scene = asdict(standing) | {"scene": None if standing.scene == "block" else standing.scene}
+        given = {"width": width, "height": height, **scene, **asdict(excitation)}
+        refuse_given(given, "only without --results")
+        case = most_different(results, sources)
+        system, motion, start = case.block, case.motion, (0.0, 0.0)
+    window = free_rocking_window(system, motion)
+    refuse_endless(system, window, dt=yours.dt)
+    frames = window * slower * FRAMES_A_SECOND
+    if not frames < MOST_FRAMES:
+        seconds = f"{window:g} s at --slower {slower:g} are {frames:.3g} frames"
+        raise BadInputError(f"{seconds}; a film must have fewer than {MOST_FRAMES}")
+    times = np.linspace(0.0, window, math.ceil(frames) + 1)
+    shown = Question(system=system, motion=motion, start=start, duration=window, times=times)
+    rows = moved(shown, sources, yours, place_of(computing, at_once=True))
+    if usable := [row for row in rows if row["outcome"] != Outcome.FAILED.value]:
+        from studies.drawing.film import write_film
+
+        write_film(out, system, motion, times, usable, FRAMES_A_SECOND)
+        print(out)
+    return exit_code(rows)
+
+
+def check_film(path: Path) -> None:
+    """Refuse a file to which no film can be written."""
+    if path.suffix not in (".gif", ".mp4"):
+        raise BadInputError(f"--out is {str(path)!r}; it must end in .gif or .mp4")
+    if not path.parent.is_dir():
+        raise BadInputError(f"--out is {str(path)!r}; its folder must exist")
+    check_writable("--out", path)
+    if path.suffix == ".mp4" and find_spec("imageio_ffmpeg") is None:
+        words = "that needs the extra [video]: pip install imageio-ffmpeg"
+        raise BadInputError(f"--out is an .mp4; {words}")
+
+
+def most_different(results: Path, sources: Sequence[str]) -> Case:
+    """Return the case of a sweep in which the sources' peaks differ most.
+
+    Where outcomes differ it is the one whose least peak is smallest: what overturns is then
+    furthest from what does not.
+    """
+    path = results / "sweep.csv"
+    if not path.exists():
+        raise BadInputError(f"--results is {str(results)!r}; it must hold a sweep.csv")
+    check(results, [path.name], "--results")
+    rows = pd.read_csv(path)
+    peaks = rows.pivot(index=list(CASE), columns="source", values="peak_ratio").astype(float)
+    if missing := sorted(set(sources) - set(peaks.columns)):
+        words = f"its sweep.csv lacks {', '.join(missing)}"
+        raise BadInputError(f"--results is {str(results)!r}; {words}")
+    answered = peaks[list(sources)].dropna()
+    if answered.empty:
+        raise BadInputError(f"--results is {str(results)!r}; in each of its cases a source failed")
+    least, most = answered.min(axis=1), answered.max(axis=1)
+    apart = np.isinf(most) & np.isfinite(least)
+    ratios = (most / least).where(most > least, 1.0)
+    place: Any = least[apart].idxmin() if apart.any() else ratios.idxmax()
+    return Case(**dict(zip(CASE, place, strict=True)))
+
+
+def moved(case: Question, sources: Sequence[str], yours: Yours, place: Where = here) -> list[Row]:
+    """Run the sources; return their rows with the rotation [rad] or place [m] at every time."""
+    own = yours.options(sources, case.system)
+    jobs = [Job(labels={}, case=case, source=name, options=own[name]) for name in sources]
+    rows, times = run(jobs, measure, place), np.asarray(case.times)
+    for row in rows:
+        if (history := row["history"]) is not None:
+            row["theta"] = np.interp(times, history.time, history.theta)
+            if row["outcome"] == "overturned" and not isinstance(case.system, SlidingBlock):
+                # a block that is lost from sight when its outcome is decided has fallen
+                beyond = times > history.time[-1]
+                row["theta"][beyond] = math.copysign(math.pi / 2, history.theta[-1])
+    return rows
+
+
+def measure(job: Job) -> Row:
+    """Return the columns that every row has, and the history."""
+    response = ask(job)
+    return {**summary(response), "history": response.history}
