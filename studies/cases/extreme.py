@@ -92,17 +92,17 @@ class Extreme:
 
     def options(self, source: str) -> dict[str, Any]:
         """Return the options with which a source meets the case."""
-        options: dict[str, Any] = {}
+        asked, options = resolve(source), dict[str, Any]()
         if self.step_s is not None:
             options["step"] = self.step_s * self.block.p
-        if resolve(source).kind != "engine":
+        if asked.kind != "engine":
             return options
         if self.density != 1000.0:
             options["density"] = self.density
         if self.friction is not None:
-            options["friction"] = min(self.friction, resolve(source).declared.most_friction)
+            options["friction"] = min(self.friction, asked.declared.most_friction)
         if self.contact is not None:
-            step = resolve(source).used.ordinary_step()
+            step = asked.used.ordinary_step()
             options["settings"] = contact_settings(source, self.contact, step)
         return options
 
@@ -113,28 +113,10 @@ def takes_spring(source: Source) -> bool:
 
 
 def contact_settings(source: str, time: float, step: float) -> Mapping[str, Any]:
-    """Return an engine's settings of a contact with a time T of its own.
+    """Return an engine's settings of a contact with a time T of its own, at an ordinary step.
 
-    By `Engine.spring`: it holds the block's mass m by a spring of m/T^2 with critical damping.
-
-    Parameters
-    ----------
-    source : str
-        An engine, perhaps with a preset.
-    time, step : float
-        T, and the ordinary step, in units of 1/p.
-
-    Returns
-    -------
-    mapping
-        Setting -> value, as for `Scene.settings`.
-
-    Raises
-    ------
-    ValueError
-        If the engine has no such contact.
-    KeyError
-        If the source is no engine.
+    By `Engine.spring` it holds the block's mass m by a spring of m/T^2 with critical damping; both
+    times are in units of 1/p. ValueError if the engine has no such contact.
     """
     spring = resolve(source).declared.spring
     if spring is None:
@@ -142,67 +124,10 @@ def contact_settings(source: str, time: float, step: float) -> Mapping[str, Any]
     return spring(time, step)
 
 
-def extremes(quick: bool) -> list[Extreme]:
-    """Return the cases; quick leaves out neighbours and what takes long."""
-    return [case for case in _all() if not quick or case.name in QUICK]
-
-
-QUICK = (
-    "H/B 50",
-    "H/B 0.8",
-    "H/B 0.8, violent",
-    "1 cm high",
-    "onset + 1e-6",
-    "boundary − 1e-6",
-    "ω/p 100",
-    "density 1e9",
-    "friction 1e-3",
-    "friction 1",
-    "contact of 1e-5/p",
-    "step 1/30 s",
-)
-
-
-@cache
-def _all() -> tuple[Extreme, ...]:
-    return (*_shapes(), *_amplitudes(), *_frequencies(), *_engine_matters(), *_steps())
-
-
-def _shapes() -> tuple[Extreme, ...]:
-    slender = (Extreme(name=f"H/B {k}", group="shape", aspect=k) for k in (20, 50, 100))
-    squat = (Extreme(name=f"H/B {k:g}", group="shape", aspect=k) for k in (1.0, 0.8))
-    return (
-        *slender,
-        *squat,
-        Extreme(name="H/B 0.8, violent", group="shape", aspect=0.8, onsets=1.5),
-        Extreme(name="η 0.01 (H/B 0.72)", group="impact", aspect=0.72),
-        Extreme(name="η 0.001, set", group="impact", restitution=0.001),
-        Extreme(name="η 0.999, set", group="impact", restitution=0.999),
-        Extreme(name="1 cm high", group="size", width_m=0.01 / 3.0),
-        Extreme(name="20 m high", group="size", width_m=20.0 / 3.0),
-    )
-
-
-def _amplitudes() -> tuple[Extreme, ...]:
-    half = Extreme(name="boundary", group="amplitude", half_cycles=1)
-    full = replace(half, name="boundary after impact", half_cycles=2)
-    # the largest rotation that survives lies before the first impact, and after it
-    edges = [(half, overturning(half, 1.0, 5.0)), (full, overturning(full, 1.0, 1.5))]
-    return (
-        Extreme(name="onset − 1e-6", group="amplitude", onsets=1.0 - EDGE),
-        Extreme(name="onset + 1e-6", group="amplitude", onsets=1.0 + EDGE),
-        *(
-            replace(case, name=f"{case.name} {sign} 1e-6", onsets=boundary * (1.0 + nudge))
-            for case, boundary in edges
-            for sign, nudge in (("−", -EDGE), ("+", EDGE))
-        ),
-    )
-
-
 def overturning(case: Extreme, surviving: float, overturned: float) -> float:
-    """Return the amplitude [onsets] at which the exact solution begins to overturn, by bisection.
+    """Return the amplitude [onsets] at which the exact solution begins to overturn.
 
-    Between an amplitude that is survived and one that is not, to the last digit but three.
+    By bisection to the last digit but three, from one that is survived and one that is not.
     """
     while overturned - surviving > 1e-13 * surviving:
         middle = 0.5 * (surviving + overturned)
@@ -214,9 +139,40 @@ def overturning(case: Extreme, surviving: float, overturned: float) -> float:
     return surviving
 
 
-def _frequencies() -> tuple[Extreme, ...]:
+QUICK = (
+    *("H/B 50", "H/B 0.8", "H/B 0.8, violent", "1 cm high", "onset + 1e-6", "boundary − 1e-6"),
+    *("ω/p 100", "density 1e9", "friction 1e-3", "friction 1", "contact of 1e-5/p", "step 1/30 s"),
+)
+
+
+def extremes(quick: bool) -> list[Extreme]:
+    """Return the cases; quick leaves out neighbours and what takes long."""
+    return [case for case in _all() if not quick or case.name in QUICK]
+
+
+@cache
+def _all() -> tuple[Extreme, ...]:
+    half = Extreme(name="boundary", group="amplitude", half_cycles=1)
+    full = replace(half, name="boundary after impact", half_cycles=2)
+    # the largest rotation that survives lies before the first impact, and after it
+    edges = ((half, overturning(half, 1.0, 5.0)), (full, overturning(full, 1.0, 1.5)))
     pulse = Extreme(name="", group="frequency", half_cycles=1)
+    steps = {"1/30": 1.0 / 30.0, "1/240": 1.0 / 240.0, "1e-3": 1e-3, "1e-4": 1e-4, "1e-5": 1e-5}
     return (
+        *(Extreme(name=f"H/B {k:g}", group="shape", aspect=k) for k in (20, 50, 100, 1.0, 0.8)),
+        Extreme(name="H/B 0.8, violent", group="shape", aspect=0.8, onsets=1.5),
+        Extreme(name="η 0.01 (H/B 0.72)", group="impact", aspect=0.72),
+        Extreme(name="η 0.001, set", group="impact", restitution=0.001),
+        Extreme(name="η 0.999, set", group="impact", restitution=0.999),
+        Extreme(name="1 cm high", group="size", width_m=0.01 / 3.0),
+        Extreme(name="20 m high", group="size", width_m=20.0 / 3.0),
+        Extreme(name="onset − 1e-6", group="amplitude", onsets=1.0 - EDGE),
+        Extreme(name="onset + 1e-6", group="amplitude", onsets=1.0 + EDGE),
+        *(
+            replace(case, name=f"{case.name} {sign} 1e-6", onsets=boundary * (1.0 + nudge))
+            for case, boundary in edges
+            for sign, nudge in (("−", -EDGE), ("+", EDGE))
+        ),
         replace(pulse, name="ω/p 0.01", omega_over_p=0.01, onsets=1.00001),
         replace(pulse, name="ω/p 0.01, over", omega_over_p=0.01, onsets=1.2),
         replace(pulse, name="ω/p 10", omega_over_p=10.0, onsets=3.0),
@@ -224,27 +180,15 @@ def _frequencies() -> tuple[Extreme, ...]:
         Extreme(name="20 half-cycles", group="time", half_cycles=20, omega_over_p=4.0, onsets=1.5),
         Extreme(name="60 s at rest", group="time", onsets=0.9, rest_s=60.0),
         Extreme(name="60 s after rocking", group="time", rest_s=60.0),
-    )
-
-
-def _engine_matters() -> tuple[Extreme, ...]:
-    """Cases that only a method with a mass and a contact can tell apart."""
-    return (
         Extreme(name="density 1e-6", group="mass", density=1e-3),
         Extreme(name="density 1e9", group="mass", density=1e12),
-        Extreme(name="friction 1e-3", group="friction", friction=1e-3),
-        Extreme(name="friction 0.3", group="friction", friction=0.3),
-        Extreme(name="friction 1", group="friction", friction=1.0),
-        Extreme(name="friction 1e9", group="friction", friction=1e9),
-        Extreme(name="contact of 0.1/p", group="contact", contact=0.1),
-        Extreme(name="contact of 0.01/p", group="contact", contact=0.01),
-        Extreme(name="contact of 1e-3/p", group="contact", contact=1e-3),
-        Extreme(name="contact of 1e-5/p", group="contact", contact=1e-5),
-    )
-
-
-def _steps() -> tuple[Extreme, ...]:
-    named = {"1/30": 1.0 / 30.0, "1/240": 1.0 / 240.0, "1e-3": 1e-3, "1e-4": 1e-4, "1e-5": 1e-5}
-    return tuple(
-        Extreme(name=f"step {name} s", group="step", step_s=value) for name, value in named.items()
+        *(
+            Extreme(name=f"friction {name}", group="friction", friction=float(name))
+            for name in ("1e-3", "0.3", "1", "1e9")
+        ),
+        *(
+            Extreme(name=f"contact of {name}/p", group="contact", contact=float(name))
+            for name in ("0.1", "0.01", "1e-3", "1e-5")
+        ),
+        *(Extreme(name=f"step {name} s", group="step", step_s=s) for name, s in steps.items()),
     )

@@ -11,6 +11,8 @@ from analytic.response import History, Outcome, Response
 
 SAMPLES = 400
 """Samples of a history from which energies are read."""
+NEAR = 0.15
+"""Part of a flight at either end in which a coarse step may still feel the impact."""
 
 
 def energy(block: Rocker, history: History) -> FloatArray:
@@ -19,10 +21,6 @@ def energy(block: Rocker, history: History) -> FloatArray:
     kinetic = 0.5 * (history.velocity / block.p) ** 2
     result: FloatArray = kinetic + 2.0 * np.sin(block.alpha - 0.5 * y) * np.sin(0.5 * y)
     return result
-
-
-NEAR = 0.15
-"""Part of a flight at either end in which a coarse step may still feel the impact."""
 
 
 def flights(
@@ -37,8 +35,7 @@ def flights(
     if history is None or len(history.time) < 2:
         return []
     energies = energy(block, history)
-    edges = [motion.duration, *(i.time for i in response.impacts)]
-    edges = [edge for edge in edges if edge >= motion.duration]
+    edges = [motion.duration, *(i.time for i in response.impacts if i.time >= motion.duration)]
     margin = 2.0 * float(history.time[1] - history.time[0])
     result = []
     for start, end in itertools.pairwise(edges):
@@ -50,46 +47,25 @@ def flights(
 
 
 def growth(block: Rocker, motion: Motion, response: Response) -> float:
-    """Return the largest rise of energy during free rocking over its largest value.
+    """Return the largest rise of energy in free rocking, after the motion, over its largest value.
 
-    The energy is the exact model's (`energy`). A rise is counted from the least energy before it,
-    through all flights and impacts: free rocking of a rigid block can only lose energy.
-
-    Parameters
-    ----------
-    block : Rocker
-    motion : Motion
-        After its end the block rocks freely.
-    response : Response
-        With a history that goes on after the motion.
-
-    Returns
-    -------
-    float
-        0 where the energy never rises; nan where no flight to an impact has two samples that are
-        further from its ends than a part NEAR of it.
+    A rise is counted from the least energy before it, through all flights and impacts: free rocking
+    of a rigid block can only lose energy. 0 where it never rises; nan where no flight to an impact
+    has two samples that are further from its ends than a part NEAR of it.
     """
     parts = flights(block, motion, response, NEAR)
     if not parts:
-        return float("nan")
+        return math.nan
     energies = np.concatenate(parts)
     rise = float((energies - np.minimum.accumulate(energies)).max())
     return rise / float(energies.max()) if rise > 0.0 else 0.0
 
 
 def energy_drift(block: Rocker, motion: Motion, response: Response) -> float:
-    """Return how much the energy of free rocking varies between two impacts.
+    """Return how much the energy of free rocking varies between two impacts, at most.
 
-    Parameters
-    ----------
-    block, motion, response
-        As for `growth`.
-
-    Returns
-    -------
-    float
-        The largest over the flights: range of the exact model's energy over its value at the
-        flight's end, without the samples next to an impact. nan unless the block rocked so.
+    Its range over a flight, without the samples next to an impact, over its value at the flight's
+    end; nan unless the block rocked so.
     """
     if response.outcome is not Outcome.ROCKED:
         return math.nan

@@ -5,6 +5,7 @@ from itertools import islice
 
 import pandas as pd
 import pytest
+from studies.precision.choices import ALL, TYPICAL, cheapest_below, choices
 
 from analytic.response import Outcome
 from studies.cases.drawn import LEAST_NORMAL, everything
@@ -12,9 +13,6 @@ from studies.cases.window import Window
 from studies.overturning import report as overturning
 from studies.overturning.report import with_verdicts
 from studies.precision import report as precision
-from studies.precision.choices import ALL, TYPICAL, cheapest_below, choices
-from studies.stability import study as stability
-from studies.stability.study import mended, peers
 from studies.validate import claims as validate
 from studies.validity import study as validity
 
@@ -72,60 +70,6 @@ def test_a_lucky_setting_is_not_the_cheapest():
     assert cheapest_below(pd.DataFrame(lines), 5e-3)["value"] == 2e-3
     assert cheapest_below(pd.DataFrame(lines), 1.5e-3)["value"] == 1e-3
     assert cheapest_below(pd.DataFrame(lines), 5e-4) is None
-
-
-def extreme(source, verdict, outcome="rocked", peak=0.5):
-    return {
-        "source": source,
-        "verdict": verdict,
-        "outcome": outcome,
-        "exact_outcome": "rocked",
-        "peak_ratio": peak,
-        "exact_peak": 0.5,
-        "error": peak / 0.5 - 1.0,
-    }
-
-
-def test_unseen_and_invalid_cases_are_not_right_ones():
-    rows = [extreme("mujoco", word) for word in ("good", "good", "unseen", "off", "invalid")]
-    assert "Of extreme cases mujoco gets right: " in stability.finding(pd.DataFrame(rows))
-    assert "2 of 4" in stability.finding(pd.DataFrame(rows))
-    more = [{**row, "source": source} for row in rows for source in ("mujoco", "dart", "rapier")]
-    assert "3 engines get right: with steps that land on impacts 6 of 12." in (
-        stability.finding(pd.DataFrame(more))
-    )
-
-
-def test_each_preset_is_counted_over_the_engines_that_were_asked():
-    """Engines that are left out with one preset make its number no other's neighbour."""
-    words = {
-        **{f"{engine}:naive": "no_answer" for engine in ("mujoco", "rapier")},
-        **{
-            "rapier:fixed": "no_answer",
-            "dart:naive": "good",
-            "mujoco:fixed": "good",
-            "rapier": "rest_wrong",
-        },
-    }
-    rows = pd.DataFrame([extreme(source, word) for source, word in words.items()])
-    text = stability.finding(rows)
-    assert "as their documentation shows them 1 of 3, with" in text
-    assert "with a tuned contact and a fixed step 0 and 1 of 1" in text
-
-
-def test_the_reference_stands_beside_independent_integrators():
-    rows = [
-        extreme("radau", "good", peak=0.5 + 1e-7),
-        extreme("dop853", "fall_wrong", "overturned", math.inf),
-    ]
-    rest = {"case": "a", "remedy": "", "failure": "", "invalid": "", "friction": 1.0}
-    table = pd.DataFrame(rows).assign(error=[2e-7, math.nan], slip_widths=0.0, **rest)
-    found = peers(table).set_index("source")
-    assert found[["runs", "same"]].to_numpy().tolist() == [[1, 1], [1, 0]]
-    assert found.loc["radau", "off"] == pytest.approx(1e-7, rel=1e-6)
-    counts = mended(table.assign(remedy="another step", failure="THROWN")).to_dict("records")
-    assert counts == [{"verdict": "fall_wrong", "failures": 1, "unbounded": 1, "mended": 1}]
-    assert mended(table)[["unbounded", "mended"]].to_numpy().tolist() == [[0, 0]]
 
 
 def test_the_census_counts_what_was_left_out():

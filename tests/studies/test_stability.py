@@ -1,4 +1,4 @@
-"""Extreme cases: their boundaries, the verdicts, the search for a step, the sensitivity."""
+"""Extreme cases: their boundaries, the verdicts, remedies, the search for a step, the tables."""
 
 import math
 from dataclasses import replace
@@ -9,35 +9,21 @@ import pytest
 
 from analytic import Outcome, Response, simulate
 from analytic.response import History, Impact
+from studies import stability
+from studies.__main__ import run as rocking
 from studies.cases.extreme import QUICK, Extreme, contact_settings, extremes
-from studies.old.jobs import ask
-from studies.old.options import Running
-from studies.old.plan import fill
-from studies.measures.differences import with_conditioning
+from studies.drawing.stability import MARKS
+from studies.kit.run import lost_row, run
 from studies.measures.energy import energy, growth
-from studies.measures.verdicts import Verdict, invalidity, judge
-from studies.sources.registry import resolve
-from studies.stability import STUDY, study
-from studies.stability.figure import MARKS
-from studies.stability.largest_step import (
+from studies.measures.largest_step import (
     FACTOR,
     LARGEST_STEP,
-    PROBLEMS,
     SMALLEST_STEP,
+    contact_times,
     largest_good,
-    search,
-    search_job,
-    step_jobs,
 )
-from studies.stability.remedies import NOTHING, answer, remedies
-from studies.stability.sensitivity import (
-    CASES,
-    condition_number,
-    exact_change,
-    perturbed,
-    sensitivity_jobs,
-    with_growth,
-)
+from studies.measures.verdicts import Verdict, invalidity, judge
+from studies.sources.registry import resolve
 
 CASE = Extreme(name="plain", group="test")
 EXACT = simulate(CASE.block, CASE.motion)
@@ -47,11 +33,11 @@ def named(name):
     return next(case for case in extremes(False) if case.name == name)
 
 
-def job_of(name, source):
-    return next(
-        job
-        for job in study.matrix_jobs([source], False)
-        if (job.labels["case"], job.source) == (name, source)
+def rows_of(table, case, *sources):
+    jobs = stability.jobs(sources, table == "steps")
+    return run(
+        [it for it in jobs if it.labels["table"] == table and it.labels["case"] == case],
+        stability.measure,
     )
 
 
@@ -71,43 +57,59 @@ def test_boundary_lies_between_its_two_cases(name):
     assert outcomes == [Outcome.ROCKED, Outcome.OVERTURNED]
 
 
-def test_cases_are_asked_of_those_who_have_what_is_extreme():
-    assert not named("friction 1").applies("exact")
-    assert named("friction 1").applies("mujoco:naive")
-    assert not named("contact of 1e-5/p").applies("mujoco:naive")
-    assert not named("η 0.999, set").applies("pybullet")
-    assert named("η 0.999, set").applies("dop853")
-    assert not named("step 1/30 s").applies("dop853")
-    assert named("step 1/30 s").applies("rk4")
+@pytest.mark.parametrize(
+    ("case", "source", "asked"),
+    [
+        ("friction 1", "exact", False),
+        ("friction 1", "mujoco:naive", True),
+        ("contact of 1e-5/p", "mujoco:naive", False),
+        ("η 0.999, set", "pybullet", False),
+        ("η 0.999, set", "dop853", True),
+        ("step 1/30 s", "dop853", False),
+        ("step 1/30 s", "rk4", True),
+    ],
+)
+def test_cases_are_asked_of_those_who_have_what_is_extreme(case, source, asked):
+    assert named(case).applies(source) is asked
 
 
-def test_bullet_is_given_the_friction_that_it_takes():
-    assert named("friction 1e9").options("pybullet:naive")["friction"] == 10.0
+def test_a_case_becomes_options_of_an_engine():
+    assert named("friction 1e9").options("pybullet:naive")["friction"] == 10.0  # Bullet's largest
     assert named("friction 1e9").options("mujoco")["friction"] == 1e9
-
-
-def test_contact_of_a_time_is_critically_damped():
     settings = contact_settings("mujoco", 0.01, 0.0025)
     assert settings == {"stiffness": 0.0625, "damping": 0.5}
-    settings = contact_settings("pybullet", 0.01, 0.0025)
+    settings = contact_settings("pybullet", 0.01, 0.0025)  # critically damped
     assert settings["contact_damping"] == 2 * math.sqrt(settings["contact_stiffness"])
 
 
+AT_REST = {"outcome": Outcome.AT_REST, "peak_ratio": 0.0}
+DOUBLE = {"outcome": Outcome.ROCKED, "peak_ratio": 0.2}
+
+
 @pytest.mark.parametrize(
-    ("change", "verdict"),
+    ("case", "source", "change", "verdict"),
     [
-        ({}, Verdict.GOOD),
-        ({"peak_ratio": 1.05 * EXACT.peak_ratio}, Verdict.COARSE),
-        ({"peak_ratio": 0.5 * EXACT.peak_ratio}, Verdict.OFF),
-        ({"outcome": Outcome.OVERTURNED, "peak_ratio": math.inf}, Verdict.FALL),
-        ({"outcome": Outcome.FAILED, "message": "not finite"}, Verdict.FAILED),
-        ({"slip_m": 0.02 * CASE.block.width}, Verdict.SLIDES),
+        ("", "mujoco", {}, Verdict.GOOD),
+        ("", "mujoco", {"peak_ratio": 1.05 * EXACT.peak_ratio}, Verdict.COARSE),
+        ("", "mujoco", {"peak_ratio": 0.5 * EXACT.peak_ratio}, Verdict.OFF),
+        ("", "mujoco", {"outcome": Outcome.OVERTURNED, "peak_ratio": math.inf}, Verdict.FALL),
+        ("", "mujoco", {"outcome": Outcome.FAILED, "message": "not finite"}, Verdict.FAILED),
+        ("", "mujoco", {"slip_m": 0.02 * CASE.block.width}, Verdict.SLIDES),
+        ("", "mujoco", AT_REST, Verdict.REST),
+        ("onset + 1e-6", "mujoco", AT_REST, Verdict.UNSEEN),
+        ("60 s at rest", "mujoco", DOUBLE, Verdict.REST),
+        # the pivot lifts off: not the engine's fault, but a solver solves the same equation
+        ("H/B 0.8, violent", "mujoco", DOUBLE, Verdict.INVALID),
+        ("H/B 0.8, violent", "rk4", DOUBLE, Verdict.OFF),
+        ("H/B 0.8, violent", "mujoco", {"outcome": Outcome.FAILED}, Verdict.FAILED),
     ],
 )
-def test_verdict_of_a_changed_answer(change, verdict):
-    found = judge(CASE, "mujoco", replace(EXACT, **change))
-    assert found.verdict is verdict
-    assert (found.reason == "") == (verdict is Verdict.GOOD)
+def test_verdict_of_a_changed_answer(case, source, change, verdict):
+    found = judge(named(case) if case else CASE, source, replace(EXACT, **change))
+    assert found["verdict"] == verdict.value
+    assert (found["reason"] == "") == (verdict in (Verdict.GOOD, Verdict.FAILED)) or change.get(
+        "message"
+    )
 
 
 def test_energy_that_grows_is_seen_and_one_that_falls_is_not():
@@ -117,168 +119,115 @@ def test_energy_that_grows_is_seen_and_one_that_falls_is_not():
     edges = tuple(Impact(motion.duration + s, 1.0, -0.8) for s in (0.0, 1.0))
     for slope, grown in ((0.1, True), (-0.1, False)):
         velocity = block.p * block.alpha * (1.0 + slope * np.linspace(0.0, 1.0, 200))
-        history = History(times, theta, velocity)
-        moved = replace(EXACT, history=history, impacts=edges)
-        assert (judge(CASE, "rk4", moved).verdict is Verdict.ENERGY) == grown
-        kept = energy(block, history)[31:169]
-        expected = kept[-1] / kept[-1] - kept[0] / kept[-1] if grown else 0.0
+        moved = replace(EXACT, history=History(times, theta, velocity), impacts=edges)
+        assert (judge(CASE, "rk4", moved)["verdict"] == "energy") == grown
+        kept = energy(block, moved.history)[31:169]
+        expected = 1.0 - kept[0] / kept[-1] if grown else 0.0
         assert growth(block, motion, moved) == pytest.approx(expected, abs=2e-3)
 
 
-def test_reference_that_does_not_hold_is_not_the_engines_fault():
-    lifting = named("H/B 0.8, violent")
-    exact = simulate(lifting.block, lifting.motion)
-    wrong = replace(exact, peak_ratio=2.0 * exact.peak_ratio)
-    assert exact.min_normal < 0.0
-    assert judge(lifting, "mujoco", wrong).verdict is Verdict.INVALID
-    # a solver solves the same equation, whatever it means
-    assert judge(lifting, "rk4", wrong).verdict is Verdict.OFF
-    broken = Response.failure("the engine's state is not finite")
-    assert judge(lifting, "mujoco", broken).verdict is Verdict.FAILED
-    falling = replace(lifting, omega_over_p=0.5)
-    fallen = simulate(falling.block, falling.motion)
-    assert fallen.outcome is Outcome.OVERTURNED
-    assert "lifts off" in invalidity(falling, "mujoco", fallen)
-    assert "slides" in invalidity(named("friction 0.3"), "mujoco", EXACT)
-    assert invalidity(named("friction 1"), "mujoco", EXACT) == ""
-
-
-def test_a_rocking_too_small_to_see_is_no_wrong_outcome():
-    tiny = named("onset + 1e-6")
-    resting = replace(EXACT, outcome=Outcome.AT_REST, peak_ratio=0.0)
-    assert judge(tiny, "mujoco", resting).verdict is Verdict.UNSEEN
-    assert judge(CASE, "mujoco", resting).verdict is Verdict.REST
-    lifted = replace(EXACT, outcome=Outcome.ROCKED, peak_ratio=0.1)
-    assert judge(named("60 s at rest"), "mujoco", lifted).verdict is Verdict.REST
+def test_the_reference_holds_only_with_enough_friction():
+    assert "slides" in invalidity(named("friction 0.3"), "mujoco")
+    assert invalidity(named("friction 1"), "mujoco") == ""
+    assert invalidity(named("friction 0.3"), "rk4") == ""
 
 
 @pytest.mark.parametrize("limit", [2e-4, 3e-3, 0.011, 0.3])
 def test_edge_is_found_within_its_factor(limit):
     found = largest_good(lambda step: step <= limit, FACTOR)
     assert limit / FACTOR <= found <= limit
-
     assert largest_good(lambda step: True, FACTOR) == LARGEST_STEP
     assert math.isnan(largest_good(lambda step: step < SMALLEST_STEP, FACTOR))
 
 
 def test_a_search_is_tried_with_every_contact_time_of_a_source():
-    asked = step_jobs(["exact", "rk4", "mujoco:naive", "mujoco:fixed"], True)
-    assert [job.source for job in asked] == ["rk4", "mujoco:naive", *["mujoco:fixed"] * 2]
     own = resolve("mujoco:naive").used.contact_s
-    times = [math.nan, own, math.nan, 0.01 / CASE.block.p]
-    assert [job.labels["contact_s"] for job in asked] == pytest.approx(times, nan_ok=True)
+    for source, times in {
+        "rk4": [math.nan],
+        "mujoco:naive": [own],
+        "mujoco:fixed": [math.nan, 0.01 / CASE.block.p],
+    }.items():
+        assert contact_times(CASE, source) == pytest.approx(times, nan_ok=True)
 
 
 def test_largest_accurate_step_is_accurate_and_the_next_is_not():
-    case = Extreme(name="peak after an impact", group="steps")
-    source = resolve("average-acceleration")
-    found = search(search_job(case, "average-acceleration", math.nan, False), source, 1.0)
-    assert found.largest_accurate < found.largest_stable
-    for factor, accurate in ((1.0, True), (FACTOR, False)):
-        step = factor * found.largest_accurate
-        peak = source.call(case.block, case.motion, step=step).peak_ratio
+    (row,) = rows_of("steps", "peak after an impact", "average-acceleration")
+    assert row["largest_accurate"] < row["largest_stable"]
+    for factor, accurate in ((1.0, True), (row["factor"], False)):
+        step = factor * row["largest_accurate"]
+        peak = resolve(row["source"]).call(CASE.block, CASE.motion, step=step).peak_ratio
         assert (abs(peak / EXACT.peak_ratio - 1) <= 0.01) == accurate
 
 
 def test_a_coarse_step_is_mended_by_a_finer_one():
-    case = named("step 1/30 s")
-    job = job_of("step 1/30 s", "average-acceleration")
-    found = answer(case, job, resolve(job.source), 60.0)
-    assert judge(case, job.source, found).verdict is Verdict.OFF
-    assert found.remedy not in ("", NOTHING)
+    (row,) = rows_of("matrix", "step 1/30 s", "average-acceleration")
+    assert (row["verdict"], row["remedy"]) == ("off", "p dt 0.001, events to 1e-13")
 
 
-@pytest.mark.parametrize("source", study.METHODS)
-def test_remedies_are_other_settings(source):
-    case = named("contact of 1e-5/p")
-    found = remedies(case, source)
+@pytest.mark.parametrize("source", stability.METHODS)
+@pytest.mark.parametrize("name", ["contact of 1e-5/p", "ω/p 100", "step 1/30 s"])
+def test_remedies_are_other_settings(source, name):
+    case = named(name)
+    found = list(stability.remedies(case, source))
     assert (source, case.options(source)) not in [(name, options) for _, name, options in found]
-    assert all(sentence for sentence, *_ in found)
+    assert all(words for words, *_ in found)
 
 
-@pytest.mark.parametrize("case", CASES[:3], ids=lambda case: case.name)
-def test_kappa_is_that_of_the_other_studies(case):
-    table = pd.DataFrame(
-        {
-            "aspect": [case.aspect],
-            "amplitude_g": [case.onsets / case.aspect],
-            "omega_over_p": [case.omega_over_p],
-            "half_cycles": [case.half_cycles],
-        }
+@pytest.mark.parametrize("table", ["matrix", "steps"])
+def test_a_job_that_was_given_up_is_a_row_too(table):
+    job = next(it for it in stability.jobs(["rk4"], True) if it.labels["table"] == table)
+    row = lost_row(stability.measure, job, Response.failure("no result within the time limit"))
+    assert (row["outcome"], row["message"]) == ("failed", "no result within the time limit")
+    assert row.get("verdict", "no_answer") == "no_answer"
+
+
+def test_tables_and_what_they_say():
+    rows = rows_of("matrix", "step 1/30 s", "rk4", "average-acceleration")
+    rows += rows_of("steps", "peak after an impact", "rk4")
+    tables = stability.tabulate(pd.DataFrame(rows))
+    assert tables["stability"]["verdict"].tolist() == ["good", "off"]
+    assert tables["steps"]["runs"].tolist() == [rows[2]["runs"]]
+    assert not {"table", "runs"} & set(tables["stability"])
+    assert "1 of 2" in stability.finding(tables)
+    words = {
+        "pybullet:naive": ["off", "no_answer", "good", "invalid"],
+        "mujoco": ["good", "good", "unseen", "invalid"],
+        "pymunk": ["good", "coarse"],
+    }
+    matrix = pd.DataFrame(
+        [{"source": source, "verdict": verdict} for source in words for verdict in words[source]]
     )
-    expected = with_conditioning(table)["kappa"][0]
-    assert condition_number(case, "amplitude") == pytest.approx(expected, rel=1e-9)
-    up, down = (exact_change(case, "amplitude", sign * 1e-6) for sign in (1, -1))
-    assert (up - down) / 2e-6 == pytest.approx(expected, rel=1e-3)
-    assert condition_number(case, "friction") == 0.0
+    scores = stability.by_preset(matrix).set_index("preset")
+    # what goes unseen is not right, what is invalid not counted
+    assert scores.loc["naive"].tolist() == [1, 1, 3]
+    assert scores.loc["landing"].tolist() == [2, 3, 5]
+    assert "33 %" in stability.finding({"stability": matrix})
+    assert "60 %" in stability.finding({"stability": matrix})
+    assert len(stability.failures(matrix)) == 3
 
 
-def test_a_wider_block_keeps_its_height_and_its_pulse():
-    wider = perturbed(CASE, "width", 1e-3)
-    assert wider.block.width == pytest.approx(1.001 * CASE.block.width, rel=1e-14)
-    assert wider.block.height == pytest.approx(CASE.block.height, rel=1e-14)
-    assert wider.motion.amplitude == pytest.approx(CASE.motion.amplitude, rel=1e-14)
-    assert wider.motion.omega == pytest.approx(CASE.motion.omega, rel=1e-14)
-
-
-def test_growth_of_the_exact_solution_is_its_kappa():
-    jobs = sensitivity_jobs(["exact"], True)
-    pair = [
-        {**job.labels, "source": "exact", **study.reduce(job, ask(job, job.asked))}
-        for job in jobs
-        if job.labels["quantity"] == "amplitude" and job.labels["delta"] in (0.0, 1e-6)
-    ]
-    moved = with_growth(pd.DataFrame(pair))
-    # the second derivative of the peak is the error, some κ times the perturbation
-    assert moved["growth_over_kappa"].iloc[1] == pytest.approx(1.0, rel=1e-4)
-    assert moved["change_over_exact"].iloc[1] == pytest.approx(1.0, rel=1e-9)
-    assert math.isnan(moved["growth"].iloc[0])
-    # tables that were read back and reduced again stay as they are
-    pd.testing.assert_frame_equal(with_growth(moved), moved)
-
-
-@pytest.mark.parametrize("source", study.METHODS)
-def test_every_method_has_a_row_and_so_has_one_that_was_given_up(source):
-    job = job_of("ω/p 10", source)
-    answered = study.reduce(job, study.ask_for_table(job, resolve(source), time_limit_s=60.0))
-    given_up = study.reduce(job, Response.failure("no result within the time limit"))
-    assert answered["outcome"] == "rocked"
-    assert answered["verdict"] in [verdict.value for verdict in Verdict]
-    assert given_up["verdict"] == Verdict.FAILED.value
-    assert list(given_up) == list(answered)
-    # what nobody tunes a tuned method away from
-    if ":" not in source:
-        assert answered["verdict"] == "good"
-
-
-def test_a_search_that_was_given_up_is_a_row_too():
-    job = search_job(PROBLEMS[0], "rk4", math.nan, True)
-    row = study.reduce(job, Response.failure("no result within the time limit"))
-    assert row["outcome"] == "failed"
-    assert math.isnan(row["largest_stable"])
+def test_only_a_source_without_any_result_is_needed():
+    rows = [("a", "failed"), ("a", "rocked"), ("b", "failed")]
+    rows = [{"source": source, "outcome": outcome} for source, outcome in rows]
+    assert stability.without_result(rows) == rows[2:]
 
 
 def test_every_verdict_has_a_mark_of_its_own():
     assert set(MARKS) == set(Verdict)
-    for looks in ({m.symbol for m in MARKS.values()}, {m.colour for m in MARKS.values()}):
+    for looks in ({mark[0] for mark in MARKS.values()}, {mark[1] for mark in MARKS.values()}):
         assert len(looks) == len(Verdict)
 
 
-def test_only_a_source_without_any_result_is_speechless():
-    rows = [
-        {"source": "a", "outcome": "failed"},
-        {"source": "a", "outcome": "rocked"},
-        {"source": "b", "outcome": "failed"},
-    ]
-    assert study.without_result(rows) == rows[2:]
-
-
-def test_a_folder_goes_on_with_another_source(tmp_path):
-    fill(STUDY, study.plan(["exact"], True, 60.0), tmp_path, Running(jobs=1))
-    kept = (tmp_path / "journal.jsonl").read_text().splitlines()
-    fill(STUDY, study.plan(["exact", "housner"], True, 60.0), tmp_path, Running(jobs=1))
-    assert (tmp_path / "journal.jsonl").read_text().splitlines()[: len(kept)] == kept
-    study.report(tmp_path)
-    matrix = pd.read_csv(tmp_path / "stability.csv")
-    assert set(matrix.loc[matrix["source"] == "exact", "verdict"]) == {"good"}
-    assert set(matrix.loc[matrix["source"] == "housner", "verdict"]) != {"good"}
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        ("--sources exakt", "exakt"),
+        ("--sources mujoco mujoco", "twice"),
+        ("--time-limit 0", "--time-limit"),
+        ("--jobs none", "--jobs"),
+        ("--bands 1", "--bands"),
+    ],
+)
+def test_refused(words, named, tmp_path, capsys):
+    assert rocking(["stability", "--out", str(tmp_path / "new"), *words.split()]) == 2
+    assert named in capsys.readouterr().err

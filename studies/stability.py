@@ -1,0 +1,260 @@
+"""Stiff and extreme cases: who stays finite, keeps the outcome, the energy and the peak."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from analytic.response import Reason, Response
+from engines.declaration import Stepping
+from studies.cases.extreme import Extreme, extremes
+from studies.kit.jobs import Job, Question, Row, ask, summary, unanswered
+from studies.kit.options import Running
+from studies.kit.say import out_of, part
+from studies.kit.study import Study, Tables
+from studies.measures.energy import SAMPLES
+from studies.measures.largest_step import (
+    FACTOR,
+    PROBLEMS,
+    QUICK_FACTOR,
+    QUICK_PROBLEMS,
+    contact_times,
+    largest_steps,
+)
+from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.verdicts import ACCEPTED, Verdict, judge
+from studies.sources.registry import core_sources, resolve
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SOLVERS = ("rk4", "average-acceleration", "dop853", "radau")
+METHODS = ("exact", *SOLVERS, *core_sources("", "fixed", "naive"))
+LIMIT_S, ANSWER_S = 180.0, 54.0
+"""Time limit of a row [s], and what its answer may take of it."""
+REMEDY_STEPS, SEARCH_STEPS = 1_000_000, 500_000
+"""Steps that a remedy may take, and a run of a search, so that none of them depends on a clock
+unless all together take longer than the row may."""
+FINER, FINEST = 5e-4, 1e-4
+"""p dt of the remedy for steps that land on impacts, and for equal ones."""
+NOTHING = "none of those tried"
+GOOD = [verdict.value for verdict in ACCEPTED]
+UNBOUNDED = [reason.name for reason in (Reason.DIVERGED, Reason.THROWN, Reason.FAULT)]
+"""Failures in which a response has no bound."""
+LARGEST = ["largest_stable", "largest_accurate", "stable_over_contact", "accurate_over_contact"]
+STEPS = ["case", "contact_s", "factor", "source", "outcome", *LARGEST, "runs", "invalid", "message"]
+
+
+def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
+    """Return a job for each extreme case and source, and a search for each source that steps."""
+    factor, problems = (QUICK_FACTOR, QUICK_PROBLEMS) if quick else (FACTOR, PROBLEMS)
+    searches = [
+        _job(case, source, {}, table="steps", contact_s=contact_s, factor=factor)
+        for case in problems
+        for source in sources
+        if resolve(source).stepping
+        for contact_s in contact_times(case, source)
+    ]
+    return [*matrix_jobs(sources, quick), *searches]
+
+
+def matrix_jobs(sources: Sequence[str], quick: bool) -> list[Job]:
+    """Return a job for each extreme case and each source to which it applies."""
+    return [
+        _job(case, source, case.options(source), table="matrix", group=case.group)
+        for case in extremes(quick)
+        for source in sources
+        if case.applies(source)
+    ]
+
+
+def _job(case: Extreme, source: str, options: Mapping[str, Any], **labels: Any) -> Job:
+    times = np.linspace(case.motion.duration, case.duration, SAMPLES)
+    asked = Question(system=case.block, motion=case.motion, duration=case.duration, times=times)
+    return Job(labels={**labels, "case": case.name}, case=asked, source=source, options=options)
+
+
+def measure(job: Job) -> Row:
+    """Return the verdict on an answer and the first setting that mends it, or the largest steps."""
+    until, label = perf_counter() + 0.9 * LIMIT_S, job.labels
+    cases = PROBLEMS if label["table"] == "steps" else extremes(False)
+    case = next(case for case in cases if case.name == label["case"])
+
+    def tried(source: str, options: Mapping[str, Any], steps: int) -> Response:
+        limits = {"time_limit_s": max(until - perf_counter(), 1.0), "max_steps": steps}
+        own = limits if resolve(source).engine else {}
+        return ask(replace(job, source=source, options={**options, **own}))
+
+    if job.lost is None and label["table"] == "steps":
+        return largest_steps(
+            case,
+            job.source,
+            label["contact_s"],
+            label["factor"],
+            lambda options: tried(job.source, options, SEARCH_STEPS),
+        )
+    limit = {"time_limit_s": ANSWER_S} if job.asked.engine else {}
+    response = ask(replace(job, options={**job.options, **limit}))
+    if label["table"] == "steps":
+        return unanswered(response.message)
+    found, remedy = judge(case, job.source, response), ""
+    if found["verdict"] not in GOOD and job.lost is None:
+        remedy = NOTHING
+        for words, source, options in remedies(case, job.source):
+            other = tried(source, options, REMEDY_STEPS)
+            if judge(case, source, other)["verdict"] in GOOD:
+                remedy = words
+                break
+    return {**summary(response), **found, "remedy": remedy}
+
+
+def remedies(case: Extreme, source: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Yield settings to try: in words, the source and its options, which are not the case's."""
+    asked, options = resolve(source), case.options(source)
+    if asked.kind == "solver":
+        for step in (1e-3, 1e-4):
+            finer = {"step": step, "event_tolerance": 1e-13}
+            yield f"p dt {step:g}, events to 1e-13", source, finer
+    if asked.kind == "peer":
+        yield "rtol 1e-12", source, {"rtol": 1e-12}
+    if not asked.engine:
+        return
+    engine, preset = asked.declared, asked.used
+    tuned = preset is not engine.presets[0]
+    plain = {name: value for name, value in options.items() if name != "settings"}
+    better = {name: value for name, value in plain.items() if name != "step"}
+    if tuned and engine.remedy:
+        words = ", ".join(f"{name} {value:g}" for name, value in engine.remedy.items())
+        settings = {**options.get("settings", {}), **engine.remedy}
+        yield words, source, {**options, "settings": settings}
+    if case.contact is not None:
+        yield "the preset's own contact", source, plain
+    if case.step_s is None and tuned:
+        step = FINEST if preset.stepping is Stepping.FIXED else FINER
+        yield f"p dt {step:g}", source, {**options, "step": step}
+    if case.step_s is not None:
+        yield "the preset's own step", source, better
+    for other in engine.presets[1:] if preset is not engine.best else ():
+        if other is not preset or better != options:
+            yield f"preset {other.name}", f"{engine.name}:{other.name}", better
+
+
+def without_result(rows: Sequence[Row]) -> list[Row]:
+    """Return the rows of sources that gave no result at all; other failures are answers."""
+    answered = {row["source"] for row in rows if row["outcome"] != "failed"}
+    return [row for row in rows if row["source"] not in answered]
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return the matrix of cases and sources, and the largest steps."""
+    searched = rows["table"] == "steps"
+    own = ["table", "contact_s", "factor", "runs", *LARGEST]
+    matrix = rows[~searched].drop(columns=own, errors="ignore")
+    return {
+        "stability": matrix.astype({"impacts": int, "steps": int}),
+        "steps": rows.loc[searched].reindex(columns=STEPS).astype({"runs": int}),
+    }
+
+
+def by_preset(matrix: pd.DataFrame) -> pd.DataFrame:
+    """Return for each preset how many engines have it, and how many valid cases they predict."""
+    valid = matrix["verdict"] != Verdict.INVALID.value
+    asked = matrix[matrix["source"].map(is_engine) & valid]
+    asked = asked.assign(
+        preset=asked["source"].map(preset_of), right=asked["verdict"] == Verdict.GOOD.value
+    )
+    found = asked.groupby("preset").agg(
+        engines=("source", "nunique"), right=("right", "sum"), valid=("right", "size")
+    )
+    return found.loc[in_order(found.index)].reset_index()
+
+
+def verdicts(matrix: pd.DataFrame) -> pd.DataFrame:
+    """Return how often each source met each verdict."""
+    counts = pd.crosstab(matrix["source"], matrix["verdict"])
+    columns = [verdict.value for verdict in Verdict if verdict.value in counts]
+    return counts.loc[list(matrix["source"].unique()), columns].reset_index()
+
+
+def failures(matrix: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows whose verdict is a failure of their source."""
+    return matrix[~matrix["verdict"].isin(GOOD)]
+
+
+def finding(tables: Tables) -> str:
+    """Say which part of the valid cases engines predict, with their first preset and their last."""
+    matrix = tables["stability"]
+    found = by_preset(matrix)
+    if found.empty:
+        right = (matrix["verdict"] == Verdict.GOOD.value).sum()
+        return f"Models and solvers predict {out_of(right, len(matrix))} extreme cases."
+    first, *_, last = found.to_dict("records") * 2
+    share, best = (part(line["right"] / line["valid"]) for line in (first, last))
+    words = f"Engines predict {share} of the extreme cases {in_words(first['preset'])}"
+    return f"{words}, {best} {in_words(last['preset'])}." if first != last else f"{words}."
+
+
+def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+    """Return scores by preset, verdicts, failures and what mends them, and the largest steps."""
+    matrix, steps = tables["stability"], tables["steps"]
+    wrong = failures(matrix)
+    wrong = wrong.assign(
+        unbounded=wrong["failure"].isin(UNBOUNDED), mended=~wrong["remedy"].isin(["", NOTHING])
+    )
+    kinds = wrong.groupby("verdict", sort=False)[["unbounded", "mended"]].agg("sum")
+    kinds.insert(0, "failures", wrong["verdict"].value_counts())
+    doubtful = matrix.loc[matrix["verdict"] == Verdict.INVALID.value, ["case", "invalid"]]
+    return {
+        "Valid cases that engines predict, by preset": by_preset(matrix),
+        "Verdicts on the extreme cases": verdicts(matrix),
+        "Failures, those without a bound, and those that another setting mends": (
+            kinds.reset_index()
+        ),
+        "Failures, and the first setting that avoids each": (
+            wrong[["case", "source", "reason", "remedy"]]
+        ),
+        "Cases for which the reference does not hold": doubtful.drop_duplicates("case"),
+        "Largest stable and accurate step, p dt, and over the contact's own time": (
+            steps[["case", "source", "contact_s", *LARGEST]]
+        ),
+    }
+
+
+def figures(tables: Tables) -> Mapping[str, Figure]:
+    """Draw the matrix of cases and methods."""
+    from studies.drawing.stability import draw_matrix
+
+    return {"stability": draw_matrix(tables["stability"], finding(tables))}
+
+
+STUDY = Study(
+    name="stability",
+    question="Which methods stay finite, right and accurate in stiff and extreme cases?",
+    help="""Stiff and extreme cases: who stays finite, keeps the outcome and the energy.
+
+The outcome, the peak and the energy of each method in extreme cases, the setting that mends a
+failure, and the largest stable and accurate steps. Takes some minutes. A failure is an answer: the
+exit code is 1 only where a source gives no result at all. A case whose --time-limit is below 180 s
+may be given up while settings are tried. Writes stability.csv, steps.csv, findings.txt and a
+picture.""",
+    quick="Fewer cases, and steps to 30 %: less than a minute on 2 cores.",
+    sources=METHODS,
+    jobs=jobs,
+    measure=measure,
+    needed=without_result,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    running=Running(time_limit=LIMIT_S),
+    captions={
+        "stability": "Extreme cases as rows, methods as columns: the symbol says whether the "
+        "outcome is right or how it is wrong, and whether peak and energy are.",
+    },
+)
+command = STUDY.command()
