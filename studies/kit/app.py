@@ -58,16 +58,21 @@ def main(commands: Mapping[str, str]) -> None:
             signal.signal(number, _end)
     sys.unraisablehook = _on_lost
     gc.set_threshold(10_000)  # else a tenth of a short command's time goes into garbage collection
-    for name in ("MPLBACKEND", "NUMBA_NUM_THREADS"):  # what would stop a library
-        os.environ.pop(name, None)
-    columns = shutil.get_terminal_size().columns
-    os.environ["COLUMNS"] = str(min(max(columns, NARROWEST), WIDEST))
+    settle_environment()
     say.prepare_streams()
     code = run(commands, sys.argv[1:])
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)
     say.flush()
     sys.exit(code)
+
+
+def settle_environment() -> None:
+    """Take away what would stop a library, and widths in which help cannot be set."""
+    for name in ("MPLBACKEND", "NUMBA_NUM_THREADS"):
+        os.environ.pop(name, None)
+    columns = shutil.get_terminal_size().columns
+    os.environ["COLUMNS"] = str(min(max(columns, NARROWEST), WIDEST))
 
 
 def _end(number: int, _: Any) -> None:

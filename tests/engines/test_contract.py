@@ -2,9 +2,7 @@
 
 import math
 import sys
-import time
 from dataclasses import replace
-from functools import partial
 
 import pytest
 from commanding import python
@@ -12,7 +10,7 @@ from known import Bare, ScriptedWorld
 from uses import BLOCK, CORE, HERE, SHAKEN, every_use, held_frames, pulse, rocked, scene
 
 from analytic import RockingFrame, SlidingBlock
-from analytic.response import Outcome, Reason, Response
+from analytic.response import Outcome, Reason
 from engines import ENGINES
 from engines.declaration import UNTUNED
 from engines.layouts import Ability, SideBySide
@@ -20,8 +18,6 @@ from engines.registry import OWN
 from engines.run.drive import build, run, simulate_world
 from engines.world import Pose
 from studies.cases.variants import variants
-from studies.old.executors import Local
-from studies.old.jobs import Job
 
 SIZE = {"width": 0.5, "height": 1.5}
 
@@ -222,19 +218,3 @@ def test_poses_that_are_no_rocking_block(pose, amount, reason):
     response = simulate_world(Lost(pose), scene(pulse(1.3, 1.0)), 1e-3)
     assert (response.outcome, response.reason) == (Outcome.FAILED, reason)
     assert amount in response.message
-
-
-def slow_at_first(marker, job, source):
-    """Take longer than the time limit where nothing was compiled yet."""
-    if not marker.exists():
-        time.sleep(4.0)
-        marker.touch()
-    return Response.failure("compiled")
-
-
-def test_what_compiles_itself_does_so_outside_the_time_limit(tmp_path, monkeypatch):
-    job = Job(labels={}, block=BLOCK, motion=SHAKEN, source="newton")
-    ask = partial(slow_at_first, tmp_path / "compiled")
-    engine = replace(ENGINES["newton"], library="numpy")
-    monkeypatch.setattr("engines.registry._declared", lambda name, place: engine)
-    assert [r.message for _, r in Local(1, 3.0, ask)([job])] == ["compiled"]

@@ -12,7 +12,6 @@ from uses import BLOCK, HERE, agreed, pulse, rocked, scene
 from analytic import RockingFrame, SinePulse, SlidingBlock, Still
 from analytic.response import Outcome, Reason
 from engines import ENGINES
-from engines.box2d.stacks import Box2DStacks
 from engines.declaration import UNTUNED, Stepping
 from engines.layouts import BASE, LOWER, UPPER, Ability, SideBySide, layout_of
 from engines.mujoco.settings import STACKED, TUNED
@@ -22,9 +21,6 @@ from engines.run.drive import simulate_world
 from engines.scene import Scene
 from engines.world import Moment, Pose
 from studies.cases.drawn import RandomFrame
-from studies.old.identity import Makers
-from studies.old.jobs import Job, ask, summary
-from studies.sources.registry import Source
 
 STACKERS = ("pybullet", "box2d", "dart")
 """Engines that are helped where frames land, or have code of their own for it."""
@@ -211,36 +207,6 @@ def test_those_that_hold_stacks_by_code_of_their_own():
     )
 
 
-def made(jobs, change=lambda engine: engine):
-    """Return what the rows of jobs depend on, were their engine declared otherwise."""
-    declared = Source.declared.fget
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Source, "declared", property(lambda source: change(declared(source))))
-        return [Makers(ask, summary).of(job) for job in jobs]
-
-
-@pytest.mark.parametrize("name", STACKERS)
-def test_a_row_depends_on_what_holds_its_own_scene(name):
-    posed = ((frame(2.0), "landing"), (frame(2.0), "fixed"), (BLOCK, "landing"))
-    jobs = [Job(labels={}, block=it, motion=SINE, source=f"{name}:{use}") for it, use in posed]
-    before, own = made(jobs), f"engines/{name}/stacks.py"
-    assert [own in it for it in before] == [name != "pybullet", False, False]
-
-    def stiff(engine):
-        others = (replace(it, stacked={"friction": 5.0}) for it in engine.presets[-1:])
-        return replace(engine, presets=(*engine.presets[:-1], *others))
-
-    for change, felt in (
-        (stiff, [0]),
-        (
-            lambda engine: replace(engine, builders={Ability.STACKED: Box2DStacks}),
-            [0, 1] if name == "pybullet" else [1],
-        ),
-    ):
-        now = made(jobs, change)
-        assert [number for number in range(3) if now[number] != before[number]] == felt
-
-
 HARD = {
     "a light beam, which lets go": (3.373, 9.294, 3, 0.6203, 3.198, 5, 0.578),
     "one that lets go between impacts": (3.153, 0.07137, 4, 0.9501, 4.923, 5, 0.3667),
@@ -271,13 +237,6 @@ def test_a_soft_surface_is_in_proportion_to_what_lifts_a_pivot(aspect):
     firm = replace(s, impedance=(0.1, *TUNED.impedance[1:]))
     assert softened(posed, firm).impedance[0] == 0.1
     assert softened(posed, TUNED) is TUNED
-
-
-def test_blocks_and_frames_that_land_in_mujoco_know_nothing_of_it():
-    frames = [(frame(2.0), use) for use in ("fixed", "landing", "naive")]
-    posed = (*frames, (BLOCK, "fixed"))
-    jobs = [Job(labels={}, block=it, motion=QUICK, source=f"mujoco:{use}") for it, use in posed]
-    assert ["engines/mujoco/stacks.py" in it for it in made(jobs)] == [True, False, False, False]
 
 
 def test_a_frame_is_columns_that_share_their_beam():

@@ -12,12 +12,11 @@ from commanding import BLOCK, CASE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from analytic.response import Reason, Response
 from studies.__main__ import COMMANDS, run
-from studies.old import app, plan
-from studies.old.app import make_app
-from studies.old.executors import Local
-from studies.old.journal import FolderError
+from studies.kit import run as runs
+from studies.kit.app import make_app, settle_environment
+from studies.kit.store import FolderError
+from studies.kit.workers import Lost
 from studies.page import report
 
 pytestmark = pytest.mark.processes
@@ -42,8 +41,6 @@ BEGINNINGS = {
 }
 """What stands before an option so that it matters, of commands that do not fill a folder."""
 FEW = {
-    "estimate": ("--cases", "1", "--tests", "1"),
-    "steps": ("--cases", "1"),
     "sweep": ("--figure", "6"),
     "validate": ("--cases", "1"),
 }
@@ -64,15 +61,15 @@ ODD = [
 """Text that has been trouble somewhere."""
 
 
-def options_of(study):
+def options_of(name):
     """Return the options of a command, as its own declaration names them."""
-    arguments = make_app(COMMANDS)[study.name].assemble_argument_collection()
+    arguments = make_app(COMMANDS, name)[name].assemble_argument_collection()
     names = [argument.name for argument in arguments if argument.name.startswith("--")]
     assert names
     return names
 
 
-OPTIONS = {study.name: options_of(study) for study in COMMANDS}
+OPTIONS = {name: options_of(name) for name in COMMANDS}
 FULL = "nothing is run here"
 
 
@@ -87,11 +84,13 @@ def place(tmp_path_factory):
     kept = Path.cwd()
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        patch.setattr(plan, "open_journal", refuse)
-        patch.setattr(Local, "_in_processes", give_up)
+        patch.setattr("studies.kit.study.Store", refuse)
+        patch.setattr("studies.blocks.Store", refuse, raising=False)
+        patch.setattr("studies.score.Store", refuse, raising=False)
+        patch.setattr(runs, "answers", give_up)
         patch.setattr(report, "_prepare", refuse)
         patch.setattr("studies.drawing.film.write_film", lambda *_: None)
-        patch.setattr("studies.old.cluster.CONNECT_S", 0.5)
+        patch.setattr("studies.kit.cluster.CONNECT_S", 0.5)
         yield folder
     assert Path.cwd() == kept
 
@@ -101,10 +100,10 @@ def refuse(folder, *_):
     raise FolderError(folder, FULL)
 
 
-def give_up(_, pool, jobs, many):
+def give_up(call, tasks, workers, limit_s):
     """What takes long, or may crash, reaches its time limit."""
-    for number in jobs:
-        yield number, Response.failure("no result", reason=Reason.UNDECIDED)
+    for number in range(len(tasks)):
+        yield number, Lost("no result", late=True)
 
 
 @contextlib.contextmanager
@@ -208,18 +207,17 @@ def test_any_text_for_any_option(arguments, place):
 def test_every_command_has_its_help_in_a_terminal_of_any_width(columns, monkeypatch, capsys):
     """All of them in ordinary and extreme ones; what is no width is settled alike for each."""
     monkeypatch.setenv("COLUMNS", columns)
-    app.settle_environment()
-    for study in COMMANDS if columns in ("100", "1", "1000000000") else COMMANDS[:3]:
-        assert run([study.name, "--help"]) == 0
+    settle_environment()
+    for name in COMMANDS if columns in ("100", "1", "1000000000") else [*COMMANDS][:3]:
+        assert run([name, "--help"]) == 0
         output = capsys.readouterr()
         assert output.err == ""
         lines = output.out.splitlines()
-        assert lines[0].startswith(f"Usage: rocking {study.name}")
+        assert lines[0].startswith(f"Usage: rocking {name}")
         assert max(map(len, lines)) <= int(os.environ["COLUMNS"])
         if columns == "100":
-            assert study.help.splitlines()[0] in " ".join(lines)
             # "│ * --option kind ...", the asterisk where it is required
             rows = [line.replace("*", " ", 1).split()[1:] for line in lines if "│" in line[:1]]
             told = {row[0]: row for row in rows if row}
             # the option and its kind, then at least a word of what it is
-            assert [name for name in OPTIONS[study.name] if len(told[name]) <= 3] == []
+            assert [each for each in OPTIONS[name] if len(told[each]) <= 3] == []

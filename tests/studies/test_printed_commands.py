@@ -1,6 +1,5 @@
-"""The commands that pages print: each is taken as printed, and asks who answers in its tables."""
+"""The commands that pages print: each is taken as printed."""
 
-import json
 import os
 import re
 import shlex
@@ -10,18 +9,12 @@ import venv
 from importlib import metadata
 
 import pytest
-from commanding import PROSE, ROOT, refused
+from commanding import PROSE, ROOT
 from packaging.requirements import Requirement
 
-from analytic import MODELS
-from engines import ENGINES
-from engines.registry import OWN
 from studies.__main__ import COMMANDS, run
-from studies.catalogue import CHAPTERS
-from studies.old.app import make_app
-from studies.measures.published import PUBLISHED
-from studies.page import facts
-from studies.sources.registry import expanded, grouped, resolve
+from studies.kit.app import make_app
+from studies.page.chapters import PARTS
 
 
 def commands(name):
@@ -32,59 +25,18 @@ def commands(name):
 
 def taken(arguments):
     """Let the command line take arguments, all of them, without running anything."""
-    command, bound, ignored = make_app(COMMANDS).parse_args(arguments, exit_on_error=False)
-    assert command.__module__.startswith("studies.") and bound.arguments and not ignored
+    app = make_app(COMMANDS, arguments[0])
+    _, bound, ignored = app.parse_args(arguments, exit_on_error=False)
+    assert bound.arguments and not ignored
 
 
-PLACES = [place for place in CHAPTERS if facts.is_published(PUBLISHED, place[1])]
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.folder)
+@pytest.mark.parametrize("full", [True, False])
+def test_the_command_of_a_part_is_taken(part, full):
+    taken(part.words("DIR", full))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("place", PLACES, ids=lambda place: place[1].folder)
-def test_of_the_command_of_a_chapter_nothing_is_refused_but_the_folder(place, tmp_path, capsys):
-    study, chapter = place
-    words = facts.command_of(study, chapter, PUBLISHED / chapter.folder)
-    file = tmp_path / "DIR"
-    file.touch()
-    refused(capsys, [file if word == "DIR" else word for word in words], str(file), "not a file")
-
-
-@pytest.mark.parametrize("place", PLACES, ids=lambda place: place[1].folder)
-def test_the_command_of_a_chapter_asks_who_answers_in_its_tables(place):
-    study, chapter = place
-    words = facts.command_of(study, chapter, PUBLISHED / chapter.folder)
-    taken(words)
-    record = json.loads((PUBLISHED / chapter.folder / "provenance.json").read_text())
-    answered = {used(name) for name in record.get("made", {}).get("rows", {})}
-    if "--sources" in words and answered:
-        asked = map(used, expanded(words[words.index("--sources") + 1 :]))
-        more = here(asked) ^ here(answered)
-        assert not more or {"exact"} < dict(more).keys() <= MODELS.keys()  # maps have no rows
-    if "--engines" in words and answered:
-        asked = set(words[words.index("--engines") + 1 :])
-        assert asked == {name for name, _ in answered if name in ENGINES}
-
-
-def here(pairs):
-    """Return those of models and of the published engines that are installed."""
-    known = {name for name in OWN if ENGINES[name].installed} | MODELS.keys()
-    return {pair for pair in pairs if pair[0] in known}
-
-
-def used(name):
-    """Return a source, and of an engine the preset for which it stands."""
-    engine = name.partition(":")[0]
-    return engine, resolve(name).preset or (ENGINES[engine].best.name if engine in ENGINES else "")
-
-
-def test_names_of_all_engines_with_a_preset_are_one_word():
-    fixed = [f"{name}:fixed" for name in OWN]
-    assert [*grouped(["exact", *fixed, "mujoco"])] == ["exact", "engines:fixed", "mujoco"]
-    assert [*grouped([*OWN, "rk4"])] == ["engines", "rk4"]
-    assert [*grouped(fixed[1:])] == fixed[1:]
-
-
-QUICK = ("symptoms", "advise", "export", "blocks", "compare")
+QUICK = ("advise", "export", "blocks", "compare")
 
 
 @pytest.mark.parametrize("command", commands("README.md"))
@@ -147,15 +99,12 @@ def test_a_command_of_the_readme_runs_to_its_end_with_the_core_packages_alone(co
 def test_a_command_within_a_page_is_taken(name):
     """Whole ones; of a command alone its name."""
     text = (ROOT / name).read_text(encoding="utf-8")
-    known = {command.name for command in COMMANDS}
     inside = [" ".join(found.split()) for found in re.findall("`(rocking [^`]*)`", text)]
     for command in (*inside, *(commands(name) if name != "README.md" else ())):
         _, *arguments = shlex.split(command, comments=True)
-        assert arguments[0] in known | {"COMMAND"}
+        assert arguments[0] in {*COMMANDS, "COMMAND"}
         if len(arguments) > 1 and arguments[0] != "COMMAND":
             taken(arguments)
-    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"][
-        "optional-dependencies"
-    ]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     for named in re.findall(r"pip install [^`\n]*'\.\[([\w,]+)\]'", text):
-        assert set(named.split(",")) <= set(extras)
+        assert set(named.split(",")) <= set(project["optional-dependencies"])

@@ -44,11 +44,11 @@ advise --engine mujoco --dt 1,5 | --dt is '1,5'; it must be a positive finite nu
 advise --engine mujoco --friction inf | --friction is 'inf' | 0 or more
 advise --engine mujoco --dt | --dt
 advise --engine mujoco --friction | --friction
-symptoms --engines mujoco --dt x | --dt is 'x'; it must be a positive finite number
-symptoms --engines mujoco --friction -1 | --friction is '-1' | 0 or more
-symptoms --engines mujoco --dt 0.1 0.2 | 0.2
-estimate --out DIR --sources mujoco:naive --dt -1 | --dt is '-1' | positive finite number
-estimate --out DIR --sources mujoco:naive --friction nan | --friction is 'nan' | 0 or more
+advise --symptoms --engines mujoco --dt x | --dt is 'x'; it must be a positive finite number
+advise --symptoms --engines mujoco --friction -1 | --friction is '-1' | 0 or more
+advise --symptoms --engines mujoco --dt 0.1 0.2 | 0.2
+validate --halves --out DIR --sources mujoco:naive --dt -1 | --dt is '-1' | positive finite number
+validate --halves --out DIR --sources mujoco:naive --friction nan | --friction is 'nan' | 0 or more
 sweep --out DIR --accuracy None | --accuracy is 'None' | loose
 sweep --figure 6.5 --out DIR | --figure is '6.5' | 6, 7, 8, 9
 sweep --figure 6 6 --out DIR | --figure names 6 twice | once
@@ -92,6 +92,9 @@ stability --out DIR --sources exact exact | --sources names 'exact' twice | once
 blocks list.csv --record X.AT2 --sources exat --out DIR | --sources: source is 'exat'
 compare CASE --hight 2 | --hight | --height
 weep | weep | sweep
+free --out DIR | free was retired in 0.3; see the changelog
+cost --out DIR | cost was retired in 0.3; use precision
+symptoms --out DIR | retired in 0.3; use advise
 --version x | --version | alone
 compare --version x | --version | alone
 x --version | --version | alone
@@ -143,14 +146,14 @@ compare CASE --friction 1 --sources rk4 | --friction is 1; it must come with an 
 compare CASE --friction 99 --sources pybullet | friction is 99.0; it must be from 0 to
 compare CASE --dt 1e-12 --sources rk4 | --dt is 1e-12; it must be at least 3.6
 compare CASE --dt 0.01 --step 0.1 --sources rk4 | --dt is 0.01 and --step is 0.1; give one or the
-estimate --out DIR --dt 0.1 --step 0.1 --sources rk4 | --dt is 0.1 and --step is 0.1; give one or
+validate --halves --out DIR --dt 0.1 --step 0.1 --sources rk4 | --dt is 0.1 and --step is 0.1; give one or
 export CASE --dt 0.1 --step 0.1 --engine mujoco:naive --out DIR | give one or the other
-estimate --out DIR --sources mujoco --dt 0.1 | mujoco takes steps that
-estimate --out DIR --sources pybullet --friction 99 | friction is 99.0
+validate --halves --out DIR --sources mujoco --dt 0.1 | mujoco takes steps that
+validate --halves --out DIR --sources pybullet --friction 99 | friction is 99.0
 advise --engine pybullet --friction 99 | friction is 99.0; it must be from 0
-symptoms --engines pybullet --friction 99 | friction is 99.0; it must be
+advise --symptoms --engines pybullet --friction 99 | friction is 99.0; it must be
 advise --engine mujoco --dt 2 | --dt is 2; it must be from 1e-06 to 1 s
-symptoms --engines mujoco --dt 1e-9 | --dt is 1e-09; it must be from 1e-06 to 1 s
+advise --symptoms --engines mujoco --dt 1e-9 | --dt is 1e-09; it must be from 1e-06 to 1 s
 advise --engine mujoco --dt 0.002 --error 0.1 | --error is 0.1; it may be given only without
 advise --engine mujoco --dt 0.002 --out DIR | --out is DIR; it may be given only without --dt
 
@@ -182,7 +185,6 @@ contact --out '' | --out is empty | given
 sweep --out ' ' | --out is empty | given
 report --out '	' | --out is empty | given
 report --out /dev/null | --out is '/dev/null' | folder
-cost --out /dev/null | --out is '/dev/null' | folder
 animate CASE --out film.avi | --out | .gif
 animate CASE --out nowhere/film.gif | --out | folder
 animate CASE --out /dev/full/film.gif | --out | folder
@@ -204,7 +206,7 @@ animate BLOCK --amplitude 1 --omega 1e-9 --out a.gif | --width | 1/p
 animate CASE --slower 1e9 --out film.gif | --slower 1e+09 | 1500
 animate CASE --slower 1e308 --out film.gif | --slower 1e+308 | 1500
 validate --out DIR --step 9e-8 | --step is '9e-8' | at least 1e-07
-estimate --out DIR --step 1e-300 | --step is '1e-300' | at least 1e-07
+validate --halves --out DIR --step 1e-300 | --step is '1e-300' | at least 1e-07
 """
 """A command line, and parts of the line with which it is refused."""
 

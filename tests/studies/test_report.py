@@ -15,52 +15,30 @@ from given import BLOCK
 
 from analytic import SinePulse, simulate
 from analytic.block import GRAVITY
-from studies.catalogue import CHAPTERS, STUDIES
 from studies.measures.published import PUBLISHED
 from studies.page import page, report
+from studies.page.chapters import PARTS
 from studies.page.page import AXES, engine_cases
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 SMALL = {
     "sweep": ("--figure", "6", "--sources", "exact", "modified", "rk4"),
-    "defaults": ("--quick", "--sources", "pybullet:naive"),
     "histories": ("--figure", "4", "--sources", "exact", "moreau"),
 }
 """Chapters that are quickly made, and their arguments here."""
+SMALL_OF = {part.folder: part for part in PARTS}
 FEW = 2
 """Rows of a table that the page shows here."""
-
-
-@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
-def test_a_study_has_a_command_and_one_with_a_table_can_be_drawn_and_told(study):
-    module = study.load()
-    needed = ["command", *["finding"] * bool(study.table)]
-    assert all(callable(getattr(module, name)) for name in needed)
-    assert not study.chapters or study.table
-
-
-def test_every_study_is_a_chapter_but_those_shown_elsewhere():
-    shown = {study.name for study, _ in CHAPTERS}
-    alone = {"compare", "blocks", "animate", "export", "cost", "score", "doctor"}
-    assert {study.name for study in STUDIES} - shown == alone
-
-
-def test_what_a_chapter_shows_is_what_its_study_writes():
-    for study, chapter in CHAPTERS:
-        assert set(chapter.tables) <= set(study.products), study.name
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
+    parts = tuple(replace(SMALL_OF[f], quick=words) for f, words in SMALL.items())
     with pytest.MonkeyPatch.context() as patch:
-        few = tuple(
-            (study, replace(chapter, quick=SMALL[chapter.folder]))
-            for study, chapter in CHAPTERS
-            if chapter.folder in SMALL
-        )
-        patch.setattr(report, "CHAPTERS", few)
-        patch.setattr(page, "CHAPTERS", few)
+        for module in (page, report):
+            patch.setattr(module, "PARTS", parts)
+        patch.setattr(page, "CHAPTERS", {"A chapter": parts})
         patch.setattr(page, "SHOWN", FEW)
         assert report.command(out=folder) == 0
     return folder
@@ -96,43 +74,24 @@ def test_the_page_holds_all_it_shows(made):
 
 def test_the_page_says_what_the_tables_say(made):
     text = (made / "report.html").read_text()
-    summary = pd.read_csv(made / "sweep" / "summary.csv").set_index("source")
-    line = next(summary.loc[["modified"]].itertuples())
-    assert f"modified the fall wrong in {line.fall_wrong}." in text
     record = json.loads((made / "sweep" / "provenance.json").read_text())
     assert f"mujoco {record['engines']['mujoco']}" in text
+    assert SMALL_OF["sweep"].study.finding(SMALL_OF["sweep"].study.read(made / "sweep")) in text
 
 
 def test_the_page_shows_the_first_rows_of_a_table_and_says_where_all_are(made):
     text = (made / "report.html").read_text()
     bodies = re.findall('<div class="scroll".*?<tbody>(.*?)</tbody>', text, re.DOTALL)
     assert max(body.count("<tr>") for body in bodies) == FEW
-    rows = len(pd.read_csv(made / "sweep" / "summary.csv"))
-    assert f"The first {FEW} of {rows} rows; all: sweep/summary.csv." in text
-    tabular = re.findall('<pre tabindex="0">(.*?)</pre>', text, re.DOTALL)
-    assert max(len(lines.splitlines()) for lines in tabular) == FEW + 2
+    assert f"The first {FEW} of 3 rows; all of them: sweep." in text
 
 
-def test_a_picture_is_described_and_what_is_weaker_is_said(made):
+def test_a_picture_is_described_and_what_is_weaker_is_written(made):
     text = (made / "report.html").read_text()
     described = re.findall('<img [^>]*alt="([^"]*)"', text)
-    assert len(described) == 4
+    assert len(described) == 2
     assert all(len(words) > 60 for words in described)
-    assert f"Weaker than the published form:</strong> {CHAPTERS[0][1].weaker}" in text
-
-
-def test_captions_are_of_pictures_that_there_are():
-    for study in STUDIES:
-        assert {f"{name}.png" for name in study.captions} <= set(study.products)
-
-
-def test_prose_is_told_from_tables():
-    told = page.prose("A sentence.\n\nAnother.\n  a    b\n  1    2\nThe end.")
-    assert told == [
-        (False, ["A sentence.", "Another."]),
-        (True, ["  a    b", "  1    2"]),
-        (False, ["The end."]),
-    ]
+    assert SMALL_OF["sweep"].weaker in text
 
 
 def test_the_engines_answers_are_those_of_the_tables():
@@ -154,13 +113,6 @@ def test_the_engines_answers_are_those_of_the_tables():
         peak = shown[half_cycles, case.aspect, case.width_m, case.onsets, case.omega_over_p]
         known = {"overturned": -1.0, "failed": None}
         assert peak == known.get(case.outcome, float(f"{case.peak_ratio:.5g}"))
-
-
-@pytest.mark.parametrize("place", CHAPTERS, ids=lambda place: place[1].folder)
-def test_what_failed_is_found_in_any_study_s_table(place):
-    study, chapter = place
-    found = page.failures(PUBLISHED / chapter.folder, study.table)
-    assert all(item["n"] > 0 and item["message"] for item in found)
 
 
 def test_a_report_is_resumed_and_not_mixed(made, monkeypatch):
@@ -213,8 +165,3 @@ def test_the_page_fits_its_window_and_sorts(made, tmp_path: Path, width):
             BLOCK, SinePulse(amplitude=AMPLITUDE, omega=omega, half_cycles=2)
         ).peak_ratio
         assert f"{peak:.6f}" in words
-    rows = pd.read_csv(made / "defaults" / "defaults.csv").sort_values("source")
-    near = rows[(rows["width_m"] == 0.5) & (rows["omega_over_p"] == 3.5) & (rows["onsets"] == 1.3)]
-    shown = [[line.source, f"{line.peak_ratio:.4f} θcr"] for line in near.itertuples()]
-    assert [line[:2] for line in seen["engines"]] == shown
-    assert seen["unasked"]  # half-sines are not among the quick ones

@@ -1,10 +1,12 @@
-"""The sources, the paper's cases and its time histories."""
+"""Every study: what it writes, what it draws again, what it says; and every source, on one case."""
 
+import json
 import math
+from importlib import import_module
 
 import numpy as np
+import pandas as pd
 import pytest
-from commanding import redrawn, refused
 from declared import held_to
 from given import BLOCK, FULL_SINE
 
@@ -13,10 +15,69 @@ from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from engines.disclosure import Deviation
 from studies import respond
-from studies.__main__ import run
-from studies.cases.paper import sweep_cases
-from studies.catalogue import STUDIES
+from studies.__main__ import COMMANDS, run
+from studies.measures.published import PUBLISHED
+from studies.page.chapters import CHAPTERS, PARTS
 from studies.sources.registry import SOURCES, UnknownSourceError, resolve
+
+STUDIES = {
+    "histories": ("--figure", "4", "--sources", "exact", "modified"),
+    "linearizations": ("--quick",),
+    "contact": ("--quick", "--engines", "pymunk"),
+    "overturning": ("--quick", "--sources", "exact", "housner"),
+    "precision": ("--quick", "--sources", "exact", "rk4"),
+    "restitution": ("--quick", "--engines", "pymunk"),
+    "scenes": ("--quick", "--sources", "pymunk:fixed"),
+    "stability": ("--quick", "--sources", "exact", "rk4"),
+    "sweep": ("--figure", "6", "--sources", "exact", "modified"),
+    "validate": ("--cases", "3", "--sources", "exact", "rk4"),
+}
+"""Study -> a run of it that takes seconds."""
+QUICKEST = ("histories", "linearizations", "stability", "sweep", "validate")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [name if name in QUICKEST else pytest.param(name, marks=pytest.mark.slow) for name in STUDIES],
+)
+def test_a_study_is_drawn_and_worded_from_its_tables_alone(name, tmp_path, capsys):
+    study = import_module(f"studies.{name}").STUDY
+    arguments = [name, "--out", str(tmp_path), *STUDIES[name]]
+    assert run(arguments) == 0
+    printed = capsys.readouterr().out
+    assert printed == (tmp_path / "findings.txt").read_text()
+    tables, pictures = study.read(tmp_path), read_all(tmp_path, "*.png")
+    finding = study.finding(tables)
+    assert finding[0].isupper() and finding.endswith(".")
+    assert " ".join(printed.split()).startswith(finding.partition("\n")[0])
+    assert pictures and all(study.caption_of(path.stem) != path.stem for path in pictures)
+    assert set(study.figures(tables)) == {path.stem for path in pictures}
+    before = read_all(tmp_path, "*.csv")
+    assert run(arguments) == 0
+    last = json.loads((tmp_path / "provenance.json").read_text())["runs"][-1]
+    assert (last["computed"], last["rows"] > 0) == (0, True)
+    assert (read_all(tmp_path, "*.csv"), read_all(tmp_path, "*.png")) == (before, pictures)
+
+
+def read_all(folder, pattern):
+    return {path: path.read_bytes() for path in sorted(folder.glob(pattern))}
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.folder)
+def test_a_published_part_has_a_sentence_and_captions(part):
+    folder = PUBLISHED / part.folder
+    finding = part.study.finding(part.study.read(folder))
+    assert finding[0].isupper() and finding.endswith(".") and "nan" not in finding
+    assert part.name in COMMANDS
+    for picture in folder.glob("*.png"):
+        assert len(part.study.caption_of(picture.stem)) > 40
+
+
+def test_every_published_folder_is_a_part_of_the_page():
+    folders = {path.parent.name for path in PUBLISHED.glob("*/provenance.json")} - {"hero"}
+    assert folders == {part.folder for part in PARTS}
+    assert len(CHAPTERS) == 8
+
 
 HERE = installed_engines()
 EVERY_NAME = [
@@ -27,8 +88,6 @@ EVERY_NAME = [
         for use in ENGINES[engine].presets
     ),
 ]
-
-
 MISSED = {
     **{"modified": -0.06408, "onset-matched": -0.01025},
     **{"physx:naive": -0.669, "physx:naive-base-at-rest": -0.669, "physx:recommended": -0.391},
@@ -50,7 +109,7 @@ def within(name):
         return 1e-5 if name in MISSED else 1e-11
     if source.lands:
         return max(1e-4, ENGINES[source.engine].nuisance_sensitivity)
-    # out of the box an engine is wrong by a quarter; an impact inside an equal step costs 1e-2
+    # by default an engine is wrong by a quarter; an impact inside an equal step costs 1e-2
     return 0.3 if source.preset in UNTUNED else 2e-2
 
 
@@ -88,87 +147,12 @@ def test_an_unknown_source_is_refused_with_what_is_allowed(name, allowed):
     assert repr(name) in str(error.value)
 
 
-def test_options_reach_the_source():
-    coarse = respond("rk4", BLOCK, FULL_SINE, step=1e-2)
-    assert coarse.steps < respond("rk4", BLOCK, FULL_SINE, step=1e-3).steps / 5
-
-
-def test_the_paper_has_960_cases():
-    cases = list(sweep_cases((6, 7, 8, 9)))
-    assert len(cases) == len(set(cases)) == 960
-    last, pulse = cases[-1], cases[-1].motion
-    assert (last.figure, last.pulse, last.aspect, last.width_m) == (9, "full-sine", 4, 1.0)
-    assert (last.block.height, pulse.half_cycles) == (4.0, 2)
-    assert pulse.amplitude == pytest.approx((0.25 + 0.125) * 9.81)
-    assert pulse.omega == pytest.approx(4.0 * last.block.p)
-
-
-MADE = [
-    "estimate --seed 3 --cases 4 --tests 2 --sources mujoco:naive",
-    "linearizations",
-    "overturning --quick --columns 20 --rows 40 --sources exact housner",
-    "stability --quick --sources exact housner",
-]
-AT_LENGTH = [
-    "defaults --quick --sources pybullet:naive",
-    "validate --cases 3 --sources exact mujoco",
-    "validity --quick --sources pybullet:fixed",
-]
-
-
-@pytest.mark.parametrize(
-    "asked",
-    [*MADE, *(pytest.param(asked, marks=pytest.mark.slow) for asked in AT_LENGTH)],
-    ids=lambda asked: asked.partition(" ")[0],
-)
-def test_a_study_is_told_as_it_is_kept_and_drawn_again_from_its_tables(asked, tmp_path, capsys):
-    name, *options = asked.split()
-    (study,) = (study for study in STUDIES if study.name == name)
-    assert run([name, "--out", str(tmp_path), *options]) == 0
-    text = capsys.readouterr().out
-    assert text == (tmp_path / "findings.txt").read_text()
-    assert " ".join(text.split()).startswith(study.finding(tmp_path)[:80])
-    drawn = {path: path.read_bytes() for path in tmp_path.glob("*.png")}
-    assert {path.stem for path in drawn} <= set(study.captions)
-    for path, picture in drawn.items():
-        assert len(picture) > 4_000
-        path.unlink()
-    redrawn(name, tmp_path)
-    assert {path: path.read_bytes() for path in tmp_path.glob("*.png")} == drawn != {}
-
-
-# (command line, parts of what it is told)
-REFUSED = [
-    ("overturning --sources housner", "--sources", "exact"),
-    ("overturning --sources exact rk4", "'rk4'", "engines"),
-    ("overturning --onsets 0.5", "--onsets", "from 1.001 to 1000"),
-    ("overturning --low 3 --high 2", "--low", "smaller"),
-    ("overturning --low 2 --high 2.0000000000000004", "--low", "smaller"),
-    ("overturning --low 1e-300", "--low", "from 0.001 to 1000"),
-    ("overturning --high 1e300", "--high", "from 0.001 to 1000"),
-    ("overturning --over slenderness --high 2", "--high", "to 1.5"),
-    ("overturning --over size --pulse-hz 1e-300", "--pulse-hz", "from 0.0008 to 100"),
-    ("overturning --onsets 1e300", "--onsets", "to 1000"),
-    ("overturning --onsets 1.0000000000000002", "--onsets", "from 1.001"),
-    ("overturning --aspect 1e300", "--aspect", "from 0.1 to 100"),
-    ("overturning --over slenderness --omega-over-p 1e300", "--omega-over-p", "to 1000"),
-    ("overturning --over slenderness --aspect 3", "--aspect", "frequency or size"),
-    ("overturning --omega-over-p 3", "--omega-over-p", "only with --over slenderness"),
-    ("overturning --pulse-hz 2", "--pulse-hz", "only with --over size"),
-    ("overturning --columns 1000000000", "--columns", "GB"),
-    ("overturning --rows 1000000000", "--rows", "GB"),
-    ("overturning --columns 200000 --rows 1000000", "--columns", "--yes"),
-    ("overturning --over colour", "--over", "frequency"),
-    ("overturning --rows 0", "--rows", "positive"),
-    ("estimate --sources exact", "--sources is 'exact'; it must be an engine with steps"),
-    ("validate --scene slide", "--scene is 'slide'; it must be among block, frame"),
-    ("estimate --scene slide", "--scene is 'slide'; it must be among block, frame"),
-    ("validity --sources exact", "--sources names 'exact'; it must name engines"),
-]
-
-
-@pytest.mark.parametrize(("asked", "parts"), [(asked, parts) for asked, *parts in REFUSED])
-def test_what_no_study_takes_is_one_line(asked, parts, tmp_path, capsys):
-    command, *options = asked.split()
-    refused(capsys, [command, "--out", tmp_path / "new", *options], *parts)
-    assert not (tmp_path / "new").exists()
+def test_a_sweep_is_one_row_a_case_and_source(tmp_path, capsys):
+    asked = ["--figure", "6", "7", "--sources", "exact", "modified", "--jobs", "2"]
+    assert run(["sweep", *asked, "--out", str(tmp_path / "made" / "here")]) == 0
+    assert capsys.readouterr().err == ""  # no progress bar in a pipe
+    table = pd.read_csv(tmp_path / "made" / "here" / "sweep.csv")
+    assert table.groupby(["figure", "source"]).size().to_dict() == {
+        (figure, source): 240 for figure in (6, 7) for source in ("exact", "modified")
+    }
+    assert not table.duplicated(["figure", "aspect", "width_m", "omega_over_p", "source"]).any()

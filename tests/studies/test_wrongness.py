@@ -7,8 +7,6 @@ import pytest
 
 from analytic.response import Outcome
 from studies.measures.differences import summarize, with_reference
-from studies.measures.posed import posed
-from studies.measures.words import between, in_kinds, right_of
 from studies.measures.wrongness import (
     FALL,
     KINDS,
@@ -16,10 +14,10 @@ from studies.measures.wrongness import (
     NO_ANSWER,
     REST,
     counted,
+    in_kinds,
     kinds_of,
     wrong_in,
 )
-from studies.sweep import study as sweep
 
 REST_WORD, ROCKED, OVER, _, FAILED = (outcome.value for outcome in Outcome)
 
@@ -51,19 +49,9 @@ def test_kinds_are_counted_and_said():
     )
     counts = counted(wrong_in(rows))
     assert counts == dict.fromkeys(KINDS, 1) and set(MEANINGS) == set(KINDS)
-    words = "the fall wrong in 1, at rest for rocked in 1 and no answer in 1"
-    assert in_kinds(counts) == words and right_of(rows) == f"2 of 5 ({words})"
-    assert in_kinds(dict.fromkeys(KINDS, 0)) == "none wrong" and right_of(rows[3:]) == "all 2"
-
-
-def test_several_sources_are_never_added_up():
-    lines = pd.DataFrame({FALL: [1, 44, 3], REST: [0, 0, 357], NO_ANSWER: [0, 0, 0]})
-    names = pd.Series(["dart", "pymunk", "drake"])
-    assert between(lines, names) == (
-        "the fall wrong in 1 (dart) to 44 (pymunk) and at rest for rocked in up to 357 (drake)"
-    )
-    assert between(lines.assign(**{FALL: 2, REST: 0}), names) == "the fall wrong in 2 each"
-    assert between(lines * 0, names) == "none wrong"
+    words = "wrong overturning in 1, missed rocking in 1, no result in 1"
+    assert in_kinds(counts) == words
+    assert in_kinds(dict.fromkeys(KINDS, 0)) == "none wrong"
 
 
 def case(source, outcome, peak, **changes):
@@ -93,63 +81,3 @@ def test_a_summary_has_a_column_for_each_kind():
     assert {kind: line[kind] for kind in KINDS} == {FALL: 2, REST: 2, NO_ANSWER: 1}
     assert line["agree"] + sum(line[kind] for kind in KINDS) == line["cases"]
     assert line["false_overturnings"] + line["missed_overturnings"] == line[FALL]
-
-
-def test_a_sweep_says_the_kinds_and_how_many_problems_its_cases_are():
-    rows = drake_like()
-    lines = summarize(with_reference(rows))
-    words = "the fall wrong in 2, at rest for rocked in 2 and no answer in 1"
-    assert f"one engine gets {words} of 6 cases, and peaks" in sweep.finding_of(lines)
-    many = pd.concat([lines, lines.assign(source="dart:naive", rest_wrong=0, no_answer=0)])
-    many = pd.concat([many, lines.assign(source="pymunk:naive")], ignore_index=True)
-    table = sweep.preset_table(many)
-    said = (
-        "3 engines get the fall wrong in 2 each, at rest for rocked in up to 2 (Drake) and no "
-        "answer in up to 1 (Drake) of 6 cases each, and peaks off by up to "
-    )
-    assert sweep.verdict(table).startswith(f"As their documentation shows them, {said}")
-    asked = posed(rows)
-    assert asked.words == "6 cases are 4 problems, in up to 2 sizes, at 1.1 times the onset"
-    assert said in sweep.finding_of(many)
-    assert f"housner {words}." in sweep.finding_of(lines.assign(source="housner"))
-    assert sweep.finding_of(lines.assign(source="exact")) == ""
-
-
-def test_cases_that_are_alike_by_similarity_are_one_problem():
-    found = posed(drake_like())
-    assert (found.cases, found.problems, found.sizes) == (6, 4, 2)
-    assert found.least == found.largest == pytest.approx(1.1)
-
-
-def summary(source, agree, median, largest):
-    return {
-        "source": source,
-        "cases": 10,
-        "agree": agree,
-        "fall_wrong": 10 - agree,
-        "rest_wrong": 0,
-        "no_answer": 0,
-        "median_error": median,
-        "max_error": largest,
-        "p90_error": largest,
-        "wall_s": 1.0,
-    }
-
-
-def test_a_sweep_tells_presets_apart_and_names_each_engines_outcomes():
-    lines = pd.DataFrame(
-        [
-            summary("exact", 10, 0.0, 0.0),
-            summary("housner", 8, 0.5, 2.0),
-            summary("pybullet:naive", 9, 0.01, 0.4),
-            summary("mujoco:naive", 10, 0.08, 0.9),
-            summary("pybullet", 10, 2e-6, 3e-5),
-        ]
-    )
-    text = sweep.finding_of(lines)
-    assert "2 engines get the fall wrong in up to 1 (PyBullet) of 10 cases each" in text
-    assert "with steps that land on impacts, one engine gets none wrong of 10 cases" in text
-    assert "by linearization: housner the fall wrong in 2." in text
-    table = sweep.preset_table(lines)
-    assert list(table["source"]) == ["pybullet:naive", "mujoco:naive", "pybullet"]
-    assert table["ms"].iloc[0] == pytest.approx(100.0)

@@ -1,0 +1,133 @@
+"""The process of a command: signals, closed streams, few files, what other programs set."""
+
+import errno
+import os
+import resource
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from commanding import CASE, python, refused
+
+from studies.kit.say import reason
+
+pytestmark = pytest.mark.processes
+COMPARE = ["compare", *CASE, "--sources", "exact", "--json"]
+ENDING = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
+
+
+@pytest.mark.parametrize("number", ENDING)
+def test_a_signal_while_modules_are_loaded_is_no_traceback(number, tmp_path):
+    module = tmp_path / "modules" / "numpy.py"
+    module.parent.mkdir()
+    module.write_text(
+        f"import os\nos.kill(os.getpid(), {int(number)})\nraise SystemExit('the signal was lost')"
+    )
+    asked = ["sweep", "--figure", "6", "--sources", "exact", "--out", tmp_path / "out"]
+    done = python("-m", "studies", *asked, path=[module.parent])
+    kind = "interrupted" if number == signal.SIGINT else number.name
+    assert done.stderr == f"rocking: {kind}\n"
+    assert (done.returncode, done.stdout) == (128 + number, "")
+
+
+def test_a_signal_that_is_to_be_ignored_stays_so():
+    program = (
+        "import signal, sys; from studies.kit import app; app.run = lambda *_: print("
+        "signal.getsignal(signal.SIGHUP) == signal.SIG_IGN) or 0; app.main({})"
+    )
+    done = python("-c", program, before=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+    assert done.stdout == "True\n", done.stderr
+
+
+def closing(*numbers):
+    def before():
+        for number in numbers:
+            os.close(number)
+
+    return before
+
+
+@pytest.mark.parametrize(
+    "numbers",
+    [*(pytest.param((one,), marks=pytest.mark.slow) for one in (0, 1, 2)), (0, 1, 2)],
+)
+def test_closed_streams_change_no_exit_code_and_no_result(numbers, tmp_path):
+    before = closing(*numbers)
+    done = python("-m", "studies", *COMPARE, before=before)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.stdout == "") == (1 in numbers)
+    done = python("-m", "studies", "compare", "--width", "0", before=before)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert (done.stderr == "") == (2 in numbers)
+    if numbers == (0, 1, 2):
+        asked = ["validate", "--sources", "exact", "mujoco:fixed", "--cases", "5"]
+        done = python("-m", "studies", *asked, "--out", tmp_path / "out", before=before)
+        assert done.returncode == 0
+        assert len((tmp_path / "out" / "validate.csv").read_text().splitlines()) == 11
+
+
+def test_output_that_cannot_be_written_is_one_line():
+    with Path("/dev/full").open("w") as full:
+        done = python("-m", "studies", *COMPARE, stdout=full)
+    assert done.returncode == 2
+    assert done.stderr.splitlines() == [
+        "rocking: the output cannot be written; No space left on device"
+    ]
+
+
+def test_too_few_open_files_are_one_line(tmp_path):
+    asked = ["sweep", "--figure", "6", "--sources", "exact", "mujoco", "--jobs", "2"]
+    done = python(
+        *("-m", "studies", *asked, "--out", tmp_path / "out"),
+        before=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (13, 13)),
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert "Too many open files" in line
+
+
+@pytest.mark.parametrize("asked", [["--help"], ["--version"], [*COMPARE[:-1]]])
+def test_output_that_nobody_reads_to_its_end_is_no_failure_of_rows(asked):
+    command, pipe = [sys.executable, "-m", "studies", *asked], subprocess.PIPE
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 141  # as of any program that a pipe ends
+
+
+def test_settings_of_other_programs_change_nothing(tmp_path):
+    plot = tmp_path / "plot.png"
+    others = {"MPLBACKEND": "nonsense", "NUMBA_NUM_THREADS": "0"}
+    done = python("-m", "studies", *COMPARE, "--plot", plot, env=others)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.count("\n") == 1
+    assert plot.read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_cause_of_a_command_that_cannot_be_loaded_is_a_line(tmp_path):
+    hidden = "import sys; sys.modules['studies.cases.paper'] = None"
+    code = f"{hidden}; from studies.__main__ import main; main()"
+    done = python("-c", code, "sweep", "--out", tmp_path)
+    assert done.returncode == 2
+    assert "ModuleNotFoundError: " in done.stderr and "studies.cases" in done.stderr
+
+
+@pytest.mark.parametrize("command", ["sweep", "report"])
+def test_a_folder_of_too_long_a_name_is_refused_by_its_option(command, capsys):
+    refused(capsys, [command, "--out", 256 * "x"], "--out is 'x", "File name too long")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--out", "a/b"], "--out is 'a/b'; c/d.csv: No space left on device"),
+        (["--out=a/b/c"], "--out is 'a/b/c'; d.csv: No space left on device"),
+        (["--record", "x", "a/b/c/d.csv"], "--record is 'a/b/c/d.csv'; No space left on device"),
+        (["--out", "elsewhere"], "[Errno 28] No space left on device: 'a/b/c/d.csv'"),
+    ],
+)
+def test_a_full_disk_is_named_by_its_option(arguments, said):
+    full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "a/b/c/d.csv")
+    assert reason(full, ["sweep", *arguments]) == said
