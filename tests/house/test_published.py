@@ -14,6 +14,8 @@ from engines import ENGINES, installed_engines
 from studies import respond, sweep
 from studies.cases.paper import Case
 from studies.drawing.figures import save_all
+from studies.kit.run import makers_of
+from studies.kit.store import Store, provenance_of
 from studies.linearizations import errors_on, line
 from studies.measures.published import PUBLISHED
 from studies.page.chapters import PARTS

@@ -1,5 +1,6 @@
 """README.md and the page of the published results: what the tables say, and nothing else."""
 
+import math
 import re
 import shutil
 import tomllib

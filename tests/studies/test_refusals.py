@@ -146,7 +146,7 @@ compare CASE --friction 1 --sources rk4 | --friction is 1; it must come with an 
 compare CASE --friction 99 --sources pybullet | friction is 99.0; it must be from 0 to
 compare CASE --dt 1e-12 --sources rk4 | --dt is 1e-12; it must be at least 3.6
 compare CASE --dt 0.01 --step 0.1 --sources rk4 | --dt is 0.01 and --step is 0.1; give one or the
-validate --halves --out DIR --dt 0.1 --step 0.1 --sources rk4 | --dt is 0.1 and --step is 0.1; give one or
+validate --halves --out DIR --dt 0.1 --step 0.1 --sources rk4 | --dt is 0.1 and --step
 export CASE --dt 0.1 --step 0.1 --engine mujoco:naive --out DIR | give one or the other
 validate --halves --out DIR --sources mujoco --dt 0.1 | mujoco takes steps that
 validate --halves --out DIR --sources pybullet --friction 99 | friction is 99.0
