@@ -18,14 +18,7 @@ from studies.kit.options import Running
 from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
 from studies.measures.energy import SAMPLES
-from studies.measures.largest_step import (
-    FACTOR,
-    PROBLEMS,
-    QUICK_FACTOR,
-    QUICK_PROBLEMS,
-    contact_times,
-    largest_steps,
-)
+from studies.measures.largest_step import PROBLEMS, largest_steps, searches
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict, judge
 from studies.sources.registry import core_sources, resolve
@@ -37,9 +30,9 @@ SOLVERS = ("rk4", "average-acceleration", "dop853", "radau")
 METHODS = ("exact", *SOLVERS, *core_sources("", "fixed", "naive"))
 LIMIT_S, ANSWER_S = 180.0, 54.0
 """Time limit of a row [s], and what its answer may take of it."""
-REMEDY_STEPS, SEARCH_STEPS = 1_000_000, 500_000
-"""Steps that a remedy may take, and a run of a search, so that none of them depends on a clock
-unless all together take longer than the row may."""
+ANSWER_STEPS, REMEDY_STEPS, SEARCH_STEPS = 5_000_000, 2_000_000, 500_000
+"""Steps that an answer, a remedy and a run of a search may take, so that none of these depends on a
+clock unless all together take longer than the row may."""
 FINER, FINEST = 5e-4, 1e-4
 """p dt of the remedy for steps that land on impacts, and for equal ones."""
 NOTHING = "none of those tried"
@@ -52,15 +45,11 @@ STEPS = ["case", "contact_s", "factor", "source", "outcome", *LARGEST, "runs", "
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return a job for each extreme case and source, and a search for each source that steps."""
-    factor, problems = (QUICK_FACTOR, QUICK_PROBLEMS) if quick else (FACTOR, PROBLEMS)
-    searches = [
+    steps = [
         _job(case, source, {}, table="steps", contact_s=contact_s, factor=factor)
-        for case in problems
-        for source in sources
-        if resolve(source).stepping
-        for contact_s in contact_times(case, source)
+        for case, source, contact_s, factor in searches(sources, quick)
     ]
-    return [*matrix_jobs(sources, quick), *searches]
+    return [*matrix_jobs(sources, quick), *steps]
 
 
 def matrix_jobs(sources: Sequence[str], quick: bool) -> list[Job]:
@@ -81,36 +70,34 @@ def _job(case: Extreme, source: str, options: Mapping[str, Any], **labels: Any) 
 
 def measure(job: Job) -> Row:
     """Return the verdict on an answer and the first setting that mends it, or the largest steps."""
-    until, label = perf_counter() + 0.9 * LIMIT_S, job.labels
-    cases = PROBLEMS if label["table"] == "steps" else extremes(False)
+    until, label, lost = perf_counter() + 0.9 * LIMIT_S, job.labels, job.lost
+    searched = label["table"] == "steps"
+    cases = PROBLEMS if searched else extremes(False)
     case = next(case for case in cases if case.name == label["case"])
 
-    def tried(source: str, options: Mapping[str, Any], steps: int) -> Response:
-        limits = {"time_limit_s": max(until - perf_counter(), 1.0), "max_steps": steps}
-        own = limits if resolve(source).engine else {}
-        return ask(replace(job, source=source, options={**options, **own}))
+    def tried(
+        source: str, options: Mapping[str, Any], steps: int, most_s: float = LIMIT_S
+    ) -> Response:
+        left = max(min(most_s, until - perf_counter()), 1.0)
+        limits = {"time_limit_s": left, "max_steps": steps} if resolve(source).engine else {}
+        return ask(replace(job, source=source, options={**options, **limits}))
 
-    if job.lost is None and label["table"] == "steps":
-        return largest_steps(
-            case,
-            job.source,
-            label["contact_s"],
-            label["factor"],
-            lambda options: tried(job.source, options, SEARCH_STEPS),
-        )
-    limit = {"time_limit_s": ANSWER_S} if job.asked.engine else {}
-    response = ask(replace(job, options={**job.options, **limit}))
-    if label["table"] == "steps":
-        return unanswered(response.message)
-    found, remedy = judge(case, job.source, response), ""
-    if found["verdict"] not in GOOD and job.lost is None:
-        remedy = NOTHING
-        for words, source, options in remedies(case, job.source):
-            other = tried(source, options, REMEDY_STEPS)
-            if judge(case, source, other)["verdict"] in GOOD:
-                remedy = words
-                break
-    return {**summary(response), **found, "remedy": remedy}
+    def step(options: Mapping[str, Any]) -> Response:
+        return tried(job.source, options, SEARCH_STEPS)
+
+    if searched and lost is not None:
+        return unanswered(lost.message)
+    if searched:
+        return largest_steps(case, job.source, label["contact_s"], label["factor"], step)
+    response = tried(job.source, job.options, ANSWER_STEPS, ANSWER_S)
+    found = judge(case, job.source, response)
+    wrong = found["verdict"] not in GOOD and lost is None
+    mending = (
+        words
+        for words, source, options in (remedies(case, job.source) if wrong else ())
+        if judge(case, source, tried(source, options, REMEDY_STEPS))["verdict"] in GOOD
+    )
+    return {**summary(response), **found, "remedy": next(mending, NOTHING if wrong else "")}
 
 
 def remedies(case: Extreme, source: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
@@ -194,7 +181,9 @@ def finding(tables: Tables) -> str:
         right = (matrix["verdict"] == Verdict.GOOD.value).sum()
         return f"Models and solvers predict {out_of(right, len(matrix))} extreme cases."
     first, *_, last = found.to_dict("records") * 2
-    share, best = (part(line["right"] / line["valid"]) for line in (first, last))
+    share, best = (
+        part(line["right"] / line["valid"]) if line["right"] else "none" for line in (first, last)
+    )
     words = f"Engines predict {share} of the extreme cases {in_words(first['preset'])}"
     return f"{words}, {best} {in_words(last['preset'])}." if first != last else f"{words}."
 

@@ -5,7 +5,7 @@ gains no energy; accurate one with which the verdict is good as well.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -31,9 +31,22 @@ PROBLEMS = (
 QUICK_PROBLEMS = PROBLEMS[1:2]
 
 
+def searches(sources: Sequence[str], quick: bool) -> Iterator[tuple[Extreme, str, float, float]]:
+    """Yield problem, source, contact time [s] and factor of each search."""
+    for case in QUICK_PROBLEMS if quick else PROBLEMS:
+        for source in sources:
+            for contact_s in contact_times(case, source):
+                yield case, source, contact_s, QUICK_FACTOR if quick else FACTOR
+
+
 def contact_times(case: Extreme, source: str) -> tuple[float, ...]:
-    """Return the contact times [s] to try a source with; nan for one that has none of its own."""
+    """Return the contact times [s] to try a source with, nan for one that has none of its own.
+
+    None for a source that does not step.
+    """
     asked = resolve(source)
+    if not asked.stepping:
+        return ()
     if _is_sprung(source):
         return (math.nan, OWN_CONTACT / case.block.p)
     return (asked.used.contact_s if asked.engine else math.nan,)
@@ -57,19 +70,17 @@ def largest_steps(
     ----------
     case : Extreme
     source : str
-    contact_s : float
-        One of `contact_times`.
-    factor : float
-        Within which a step is found.
+    contact_s, factor : float
+        From `searches`.
     ask : callable
         Options -> the response to the case with them.
 
     Returns
     -------
     dict
-        outcome, "searched"; largest_stable, largest_accurate, and both over the contact's time, nan
-        where none was found; runs, how many it took; invalid, why the reference does not hold; and
-        message, of the response with the largest accurate step, or else with START.
+        outcome, "searched"; both steps, and both over the contact's time, nan where none was found;
+        runs, how many it took; invalid, why the reference does not hold; and message, of the
+        response with the largest accurate step, or else with START.
     """
     contact = contact_s * case.block.p
 

@@ -143,6 +143,7 @@ def test_edge_is_found_within_its_factor(limit):
 def test_a_search_is_tried_with_every_contact_time_of_a_source():
     own = resolve("mujoco:naive").used.contact_s
     for source, times in {
+        "exact": [],
         "rk4": [math.nan],
         "mujoco:naive": [own],
         "mujoco:fixed": [math.nan, 0.01 / CASE.block.p],
