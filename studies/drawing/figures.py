@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from PIL import Image
 
-from studies.drawing.styles import LOWEST, Style, line_of, name_of, style_of
+from studies.drawing.styles import LOWEST, line_of, name_of, style_of
 from studies.kit.tables import draft
 
 OVERTURNED = "overturned"
@@ -35,129 +35,83 @@ def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -
         theta_ratio.
     title : str
     errors : bool
-        Whether to draw under each panel how far its lines are from the exact one.
+        Whether to draw under each panel how far its lines are from the exact one, if there is one.
     """
-    panels = list(samples["panel"].unique())
-    sources = list(samples["source"].unique())
-    heights = (1.5, 1.0) if errors else (1.0,)
-    size = (10.0, (3.6 if errors else 2.9) * len(panels) + 1.3)
+    panels, sources = samples["panel"].unique(), list(samples["source"].unique())
+    heights = (1.5, 1.0) if errors and "exact" in sources else (1.0,)
+    size = (10.0, (3.6 if len(heights) > 1 else 2.9) * len(panels) + 1.3)
     drawing = Figure(figsize=size, layout="constrained")
     grid = drawing.subplots(len(panels) * len(heights), height_ratios=heights * len(panels),
                             squeeze=False)[:, 0]  # fmt: skip
-    for place, name in enumerate(panels):
-        part = samples[samples["panel"] == name]
-        _history_panel(grid[place * len(heights)], part)
-        if errors:
-            _error_panel(grid[2 * place + 1], part)
+    for axes, name in zip(grid[:: len(heights)], panels, strict=True):
+        _draw_panel(axes, samples[samples["panel"] == name])
+    for axes, name in zip(grid[1::2] if len(heights) > 1 else (), panels, strict=False):
+        _draw_errors(axes, samples[samples["panel"] == name])
     grid[-1].set_xlabel("time  t  [s]")
     drawing.suptitle(title)
-    _legend_below(drawing, sources, ground=bool(samples["amplitude_g"].any()))
-    return drawing
-
-
-def _history_panel(axes: Axes, panel: pd.DataFrame) -> None:
-    limit = _history_limit(panel)
-    motion = panel[panel["time_s"].notna()].drop_duplicates("time_s").sort_values("time_s")
-    if panel["amplitude_g"].iloc[0]:
-        _ground(axes, motion)
-    leavers = 0
-    for source, points in panel.groupby("source", sort=False):
-        _one_history(axes, points, style_of(str(source)))
-        leavers += _name_the_leaver(axes, points, style_of(str(source)), limit, leavers)
-    axes.axhline(0.0, color="#999999", linewidth=0.6)
-    axes.set(ylim=(-limit, limit), ylabel="rotation  θ/θcr  [–]")
-    axes.set_xlim(0.0, float(motion["time_s"].max()))
-    if limit > 1.0:
-        _name_the_bounds(axes)
-    axes.set_title(_caption(panel.iloc[0]), fontsize=10)
-    axes.grid(alpha=0.25)
-
-
-def _ground(axes: Axes, motion: pd.DataFrame) -> None:
-    ground = axes.twinx()
-    ground.fill_between(motion["time_s"], motion["ground_g"], color="#bbbbbb", alpha=0.45, lw=0)
-    reach = 1.15 * max(float(motion["ground_g"].abs().max()), 1e-12)
-    ground.set(ylim=(-reach, reach), ylabel="ground  üg/g  [–]")
-    axes.set_zorder(ground.get_zorder() + 1)
-    axes.patch.set_visible(False)
-
-
-def _name_the_bounds(axes: Axes) -> None:
-    end = axes.get_xlim()[1]
-    for side, name in ((1.0, "θcr"), (-1.0, "−θcr")):
-        axes.axhline(side, color="#999999", linewidth=0.8, linestyle=(0, (5, 4)))
-        axes.text(0.995 * end, 0.97 * side, name, ha="right", fontsize=8, color="#666666",
-                  va="top" if side > 0.0 else "bottom")  # fmt: skip
-
-
-def _error_panel(axes: Axes, panel: pd.DataFrame) -> None:
-    found = panel.pivot_table(index="time_s", columns="source", values="theta_ratio")
-    for source in [name for name in panel["source"].unique() if name != "exact"]:
-        style = style_of(source)
-        off = (found[source] - found["exact"]).abs()
-        # the smallest of a stretch would be the zeros between two swings
-        worst = off.rolling(max(len(off) // 60, 1), center=True, min_periods=1).max()
-        axes.plot(worst.index, worst.clip(lower=LOWEST), line_of(source), color=style.colour)
-    axes.set(yscale="log", ylabel="distance from\nexact  [θcr]", xlim=(0.0, found.index.max()))
-    axes.grid(alpha=0.25)
-
-
-def _caption(row: pd.Series[Any]) -> str:
-    label = f"({row['panel']})  " if isinstance(row["panel"], str) and row["panel"] else ""
-    size = f"B = {row['width_m']:g} m, H = {row['height_m']:g} m"
-    ground = f"{row['amplitude_g']:g} g, {row['pulse']}" if row["amplitude_g"] else "released"
-    return f"{label}{size}, {ground}"
-
-
-def _name_the_leaver(
-    axes: Axes, points: pd.DataFrame, style: Style, limit: float, row: int
-) -> bool:
-    """Write "overturned" where the line leaves the panel, in a row of its own; say if it does."""
-    leaving = points[points["theta_ratio"].abs() > limit]
-    if not ((points["outcome"] == OVERTURNED).any() and len(leaving)):
-        return False
-    first = leaving.iloc[0]
-    level = (0.9 - 0.11 * row) * limit * (1.0 if first["theta_ratio"] > 0.0 else -1.0)
-    place = (first["time_s"], level)
-    axes.annotate(f" {OVERTURNED}", place, color=style.colour, fontsize=8, va="center")
-    return True
-
-
-def _one_history(axes: Axes, points: pd.DataFrame, style: Style) -> None:
-    axes.plot(
-        points["time_s"],
-        points["theta_ratio"],
-        **{
-            **style.points(),
-            "marker": style.marker,
-            "linestyle": line_of(str(points["source"].iloc[0])),
-        },
-        linewidth=style.width if style.line else 0.7,
-        markevery=max(len(points) // 40, 1),
-    )
-
-
-def _history_limit(panel: pd.DataFrame) -> float:
-    """Return the scale: all of the survivors, and the overturning ones on their way out."""
-    survivors = panel.loc[panel["outcome"] != OVERTURNED, "theta_ratio"].abs().max()
-    overturned = (panel["outcome"] == OVERTURNED).any()
-    reach = float(survivors) if survivors > 0.0 else 0.0
-    return 1.25 if overturned else 1.15 * max(reach, 1e-6)
-
-
-def _legend_below(drawing: Figure, sources: Sequence[str], *, ground: bool = False) -> None:
-    handles = [_handle(source) for source in sources]
-    if ground:
+    handles = [Line2D([], [], label=name_of(source), **_look(source)) for source in sources]
+    if samples["amplitude_g"].any():
         handles.append(Line2D([], [], color="#bbbbbb", linewidth=6, label="ground acceleration"))
     columns = math.ceil(len(handles) / math.ceil(len(handles) / 5))
     drawing.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
+    return drawing
 
 
-def _handle(source: str) -> Line2D:
+def _look(source: str) -> dict[str, Any]:
     style = style_of(source)
-    handle = Line2D([], [], color=style.colour, linewidth=style.width, label=name_of(source))
-    handle.set(linestyle=line_of(source), marker=style.marker, fillstyle=style.fill)
-    return handle
+    look = {"color": style.colour, "linestyle": line_of(source), "marker": style.marker}
+    return {**look, "fillstyle": style.fill, "linewidth": style.width}
+
+
+def _draw_panel(axes: Axes, panel: pd.DataFrame) -> None:
+    """Draw the lines of a panel, on the scale of those that survive, over the ground's motion."""
+    overturned = panel["outcome"] == OVERTURNED
+    reach = panel.loc[~overturned, "theta_ratio"].abs().max()
+    limit = 1.25 if overturned.any() else 1.15 * (reach if reach > 1e-6 else 1e-6)
+    motion = panel[panel["time_s"].notna()].drop_duplicates("time_s").sort_values("time_s")
+    first, end = panel.iloc[0], float(motion["time_s"].max())
+    if first["amplitude_g"]:
+        ground = axes.twinx()
+        ground.fill_between(motion["time_s"], motion["ground_g"], color="#bbbbbb", alpha=0.45, lw=0)
+        most = 1.15 * max(float(motion["ground_g"].abs().max()), 1e-12)
+        ground.set(ylim=(-most, most), ylabel="ground  üg/g  [–]")
+        axes.set_zorder(ground.get_zorder() + 1)
+        axes.patch.set_visible(False)
+    level = 0.9
+    for source, points in panel.groupby("source", sort=False):
+        style, every = style_of(str(source)), max(len(points) // 40, 1)
+        look = {**style.points(), "marker": style.marker, "linestyle": line_of(str(source))}
+        width = style.width if style.line else 0.7
+        axes.plot(points["time_s"], points["theta_ratio"], **look, linewidth=width, markevery=every)
+        leaving = points[(points["theta_ratio"].abs() > limit) & (points["outcome"] == OVERTURNED)]
+        if len(leaving):  # each is named in a row of its own
+            time, ratio = leaving[["time_s", "theta_ratio"]].iloc[0]
+            axes.annotate(f" {OVERTURNED}", (time, math.copysign(level * limit, ratio)),
+                          color=style.colour, fontsize=8, va="center")  # fmt: skip
+            level -= 0.11
+    axes.axhline(0.0, color="#999999", linewidth=0.6)
+    for side, name in ((1.0, "θcr"), (-1.0, "−θcr")) if limit > 1.0 else ():
+        axes.axhline(side, color="#999999", linewidth=0.8, linestyle=(0, (5, 4)))
+        axes.text(0.995 * end, 0.97 * side, name, ha="right", fontsize=8, color="#666666",
+                  va="top" if side > 0.0 else "bottom")  # fmt: skip
+    axes.set(xlim=(0.0, end), ylim=(-limit, limit), ylabel="rotation  θ/θcr  [–]")
+    label = f"({first['panel']})  " if isinstance(first["panel"], str) and first["panel"] else ""
+    shaken = f"{first['amplitude_g']:g} g, {first['pulse']}" if first["amplitude_g"] else "released"
+    size = f"B = {first['width_m']:g} m, H = {first['height_m']:g} m"
+    axes.set_title(f"{label}{size}, {shaken}", fontsize=10)
+    axes.grid(alpha=0.25)
+
+
+def _draw_errors(axes: Axes, panel: pd.DataFrame) -> None:
+    found = panel.pivot_table(index="time_s", columns="source", values="theta_ratio")
+    for source in [name for name in panel["source"].unique() if name != "exact"]:
+        off = (found[source] - found["exact"]).abs()
+        # the smallest of a stretch would be the zeros between two swings
+        worst = off.rolling(max(len(off) // 60, 1), center=True, min_periods=1).max()
+        colour = style_of(source).colour
+        axes.plot(worst.index, worst.clip(lower=LOWEST), line_of(source), color=colour)
+    axes.set(yscale="log", ylabel="distance from\nexact  [θcr]", xlim=(0.0, found.index.max()))
+    axes.grid(alpha=0.25)
 
 
 def lay_out(drawing: Figure) -> None:
