@@ -19,11 +19,10 @@ from analytic import simulate
 from engines import ENGINES
 from studies import respond, side_by_side
 from studies.__main__ import run
-from studies.advise.evidence import published_engines
-from studies.advise.words import SETS, kept_errors
+from studies.advise.advice import find_errors
 from studies.cases.drawn import RandomCase
 from studies.measures.formulas import at_step
-from studies.measures.published import PUBLISHED, too_slippery
+from studies.measures.published import PUBLISHED, along_steps, too_slippery
 
 NEEDED = simulate(BLOCK, PULSE).friction_needed
 
@@ -218,7 +217,8 @@ def test_what_has_no_kappa_says_so(capsys):
     assert (row["outcome"], row["κ"], row["sens"]) == ("overturned", "-", "0")
 
 
-PUBLISHED_ENGINES = published_engines(PUBLISHED)
+PUBLISHED_ENGINES = list(along_steps(PUBLISHED, list(ENGINES))["engine"].unique())
+SETS = ("typical", "near overturning")
 
 
 def ladder(method):
@@ -236,7 +236,7 @@ def ladder(method):
 @pytest.mark.parametrize("engine", PUBLISHED_ENGINES)
 def test_the_error_of_a_step_is_the_largest_at_the_next_coarser_and_all_finer(engine, dt):
     p_dt = dt * BLOCK.p
-    kept = kept_errors(PUBLISHED, [engine], BLOCK, dt)
+    kept = find_errors(PUBLISHED, [engine], BLOCK, dt)
     assert list(kept["preset"]) == ["naive", "recommended", "fixed"]
     for _, line in kept.iterrows():
         known = ladder(f"{engine} {line['preset']}")
@@ -245,14 +245,14 @@ def test_the_error_of_a_step_is_the_largest_at_the_next_coarser_and_all_finer(en
         for name in SETS:
             errors = [e for of, value, e in known if of == name and value <= coarser]
             assert line[name] == max(errors)
-    finer = kept_errors(PUBLISHED, [engine], BLOCK, 0.5 * dt)
+    finer = find_errors(PUBLISHED, [engine], BLOCK, 0.5 * dt)
     assert all((finer[name] <= kept[name]).all() for name in SETS)
 
 
 def test_a_published_step_is_its_own_and_none_is_as_coarse_as_a_long_one():
-    exactly = kept_errors(PUBLISHED, ["mujoco"], BLOCK, 0.01 / BLOCK.p)
+    exactly = find_errors(PUBLISHED, ["mujoco"], BLOCK, 0.01 / BLOCK.p)
     assert exactly["coarser"].tolist() == [0.01, 0.01, 0.01]
-    long = kept_errors(PUBLISHED, ["mujoco"], BLOCK, 0.9)
+    long = find_errors(PUBLISHED, ["mujoco"], BLOCK, 0.9)
     assert long[["coarser", *SETS]].isna().all(axis=None)
 
 
@@ -302,9 +302,8 @@ def test_which_of_the_paper_s_cases_slide():
 
 def test_symptoms_are_mended_with_the_friction_that_is_given(tmp_path, capsys):
     def literals(name, *options):
-        assert (
-            run(["symptoms", "--engines", "mujoco", *options, "--out", str(tmp_path / name)]) == 0
-        )
+        asked = ["advise", "--symptoms", "--engines", "mujoco", *options]
+        assert run([*asked, "--out", str(tmp_path / name)]) == 0
         return " ".join(pd.read_csv(tmp_path / name / "symptoms.csv")["literal"].dropna())
 
     usual, mine = literals("usual"), literals("mine", "--friction", "0.35", "--dt", "0.004")
