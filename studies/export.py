@@ -88,7 +88,9 @@ def command(
         return code
     exact, found = (row["found"] for row in rows)
     if not found:
-        raise BadInputError(f"--engine is {engine!r}; what is exported must move there, and stays at rest")
+        raise BadInputError(
+            f"--engine is {engine!r}; what is exported must move there, and stays at rest"
+        )
     out.mkdir(parents=True, exist_ok=True)
     texts = files(asked, scene, found, exact)
     with ExitStack() as places:  # the script takes its place when all others have theirs

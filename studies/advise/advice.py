@@ -205,7 +205,8 @@ def why(settings: pd.DataFrame, preset: Preset, target: float) -> str:
     if error > target:
         return f"{first} the error is {100.0 * error:.3g} % at {at}"
     off, calm = out_of(line["random_off"], line["random_cases"]), line["random_calm_off"]
-    return f"{first} {off} random cases are off at {at}, {calm:.0f} of them with κ < {WELL_CONDITIONED:g}"
+    small = f"{calm:.0f} of them with κ < {WELL_CONDITIONED:g}"
+    return f"{first} {off} random cases are off at {at}, {small}"
 
 
 def name_of(preset: Preset, value: float) -> str:

@@ -43,14 +43,14 @@ FAULTS = {("drake", "slide")}  # as recommended, whose solver gives up
 TREMBLING = "frame of DART's tuned contact"
 # where Dantzig's solver fails, PGS starts from what is known again by addresses
 DIFFERS = "DART's forces on a frame depend on where in memory it is: dart_addresses.py"
+QUICK = [("mujoco", "block"), ("mujoco", "frame"), ("pymunk", "slide"), ("pymunk", "floor")]
 KINDS = [
-    *((engine, kind) for engine in USES for kind in ("block", "floor")),
-    *(("mujoco", kind) for kind in BEYOND),
+    *QUICK,
     *(
         pytest.param(engine, kind, marks=pytest.mark.slow)
         for engine in USES
-        for kind in (*STARTS, *BEYOND)
-        if engine != "mujoco" or kind in STARTS
+        for kind in ("block", "floor", *STARTS, *BEYOND)
+        if (engine, kind) not in QUICK
     ),
     pytest.param("dart", TREMBLING, marks=pytest.mark.xfail(reason=DIFFERS, strict=False)),
 ]
@@ -110,7 +110,10 @@ def test_exported_scenes_find_alone_what_the_runs_do(engine, kind, tmp_path):
     assert re.findall(line, done.stdout, re.MULTILINE) == expected
 
 
-@pytest.mark.parametrize("engine", USES)
+@pytest.mark.parametrize(
+    "engine",
+    [pytest.param(each, marks=[] if each == "pymunk" else pytest.mark.slow) for each in USES],
+)
 def test_a_script_runs_from_any_folder_and_tells_versions_and_another_peak(engine, tmp_path):
     asked = scene(PULSE, "fixed", step=5e-3)
     peak = run(engine, asked).peak_ratio
