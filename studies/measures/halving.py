@@ -7,30 +7,34 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import numpy as np
 import pandas as pd
 
+from analytic.motion import FloatArray
 from analytic.response import Outcome
 from engines.declaration import Stepping
 from studies.kit.jobs import Job
 from studies.kit.store import check
 from studies.measures.published import PUBLISHED
+from studies.measures.wrongness import FALL, REST, wrong_in
 from studies.sources.registry import resolve
 
 FACTORS = PUBLISHED / "estimate" / "factors.csv"
-"""By how much estimates are to be multiplied, as published."""
-
+"""The factors between estimates and errors, as published."""
 BOUNDED = 0.95
 """Part of the random cases whose error a factor bounds."""
-
-ELSEWHERE = "the factor was found at the preset's own step"
-"""Of landing steps twice and four times as long it is the same to 3 %, of a fixed MuJoCo step eight
-times as long it is twice as large."""
-
 MOST_TRUSTED = 30.0
-"""A factor above is no bound: the estimate does not see the error."""
+"""A larger factor is no bound: the estimate does not see the error."""
+
+CONFIDENCE = 0.95
+"""Of the interval of a factor."""
+CALIBRATE, TEST = "calibrate", "test"
+"""What a random case is for: to find the factors, or to try them."""
 
 NO_BOUND = "no bound"
-"""What is said of such an estimate."""
+ELSEWHERE = "the factor was found at the preset's own step"
+"""With steps that land it is the same at two and four times the step, within 3 %; with a fixed
+step of MuJoCo it is twice as large at eight times the step."""
 
 
 def halved(job: Job) -> Job | None:
@@ -44,9 +48,9 @@ def halved(job: Job) -> Job | None:
 
 def step_of(job: Job) -> float:
     """Return p dt of an engine's job."""
+    preset = job.asked.used
     if "step" in job.options:
         return float(job.options["step"])
-    preset = job.asked.used
     if not math.isnan(preset.step_s):
         return float(preset.step_s * job.case.system.p)
     return preset.ordinary_step(str(job.options.get("accuracy", "standard")))
@@ -68,25 +72,72 @@ def estimate_of(row: Mapping[Any, Any], finer: Mapping[Any, Any]) -> float:
     return abs(float(row["peak_ratio"]) / float(finer["peak_ratio"]) - 1.0)
 
 
-def estimates_of(rows: pd.DataFrame, finer: pd.DataFrame) -> list[float]:
-    """Return the estimate of each row, nan for one without a run at half its step.
-
-    Parameters
-    ----------
-    rows, finer : DataFrame
-        Columns case, source, outcome and peak_ratio; those at half the step in the second.
-    """
-    halves = {(row["case"], row["source"]): row for row in finer.to_dict("records")}
-    pairs = ((row, halves.get((row["case"], row["source"]))) for row in rows.to_dict("records"))
+def estimates_of(rows: pd.DataFrame, finer: pd.DataFrame, *keys: str) -> list[float]:
+    """Return the estimate of each row, nan where `finer` has none with the same keys and source."""
+    names = [*keys, "source"]
+    halves = {tuple(row[name] for name in names): row for row in finer.to_dict("records")}
+    pairs = [
+        (row, halves.get(tuple(row[name] for name in names))) for row in rows.to_dict("records")
+    ]
     return [math.nan if half is None else estimate_of(row, half) for row, half in pairs]
+
+
+def factors(lines: pd.DataFrame) -> pd.DataFrame:
+    """Return for each source by how much its estimates are to be multiplied.
+
+    The columns tested and bounded are of the cases that test, all others of those that calibrate.
+    """
+    table = []
+    for source, rows in lines.groupby("source", sort=False):
+        mine, other = (rows[rows["set"] == use] for use in (CALIBRATE, TEST))
+        kept, tested = mine.dropna(subset="over"), other["over"].dropna()
+        wrong = mine[wrong_in(mine).isin((FALL, REST))]
+        over = kept["over"].to_numpy()
+        low, high = interval(over)
+        table.append(
+            {
+                "source": source,
+                "cases": len(mine),
+                "survivors": len(kept),
+                "median_estimate": kept["estimate"].median(),
+                "median_error": kept["error"].abs().median(),
+                "factor_50": _quantile(over, 0.5),
+                "factor_95": _quantile(over, BOUNDED),
+                "factor_95_low": low,
+                "factor_95_high": high,
+                "factor_all": _quantile(over, 1.0),
+                "within_3": (kept["over"] <= 3.0).mean(),
+                "within_10": (kept["over"] <= 10.0).mean(),
+                "wrong": len(wrong),
+                "told": int((wrong["estimate"] == math.inf).sum()),
+                "tested": len(tested),
+                "bounded": int((tested <= high).sum()),
+            }
+        )
+    return pd.DataFrame(table)
+
+
+def interval(over: FloatArray) -> tuple[float, float]:
+    """Return the ends of a factor's 95 % interval, values themselves; inf of too few values."""
+    from scipy.stats import quantile_test  # it takes a second to load
+
+    if not len(over):
+        return 0.0, math.inf
+    ends: Any = quantile_test(over, p=BOUNDED).confidence_interval(CONFIDENCE)
+    low = over.min() if math.isnan(ends.low) else ends.low
+    return float(low), math.inf if math.isnan(ends.high) else float(ends.high)
+
+
+def _quantile(over: FloatArray, level: float) -> float:
+    return float(np.quantile(over, level, method="inverted_cdf")) if len(over) else math.nan
 
 
 class Trust(NamedTuple):
     """What published random cases say of a source's estimates."""
 
     factor: float
-    """By how much they are to be multiplied to bound the errors of `BOUNDED` of the cases: the
-    upper end of its 95 % interval, inf where the cases are too few for one."""
+    """That bounds the errors of `BOUNDED` of the cases: the upper end of its 95 % interval, inf
+    where the cases are too few for one."""
     cases: int
 
     @property
@@ -98,7 +149,7 @@ class Trust(NamedTuple):
         """Say that they give no bound, or nothing."""
         if self.holds:
             return ""
-        part = f"{BOUNDED:.0%} of the errors".replace("%", " %")
+        part = f"{100.0 * BOUNDED:.0f} % of the errors"
         if math.isinf(self.factor):
             return f"{NO_BOUND}: {self.cases} random cases tell no factor that bounds {part}"
         needed = f"from {self.cases} random cases it may take {self.factor:.3g} estimates"
@@ -106,24 +157,9 @@ class Trust(NamedTuple):
 
 
 def published_trust(source: str) -> Trust | None:
-    """Return what was published of a source's estimates.
+    """Return what was published of a source's estimates, if anything; refuse an edited table.
 
-    Parameters
-    ----------
-    source : str
-        Its name; an engine's best preset may be named or not.
-
-    Returns
-    -------
-    Trust or None
-        None where FACTORS has no line of it, or is not there.
-
-    Raises
-    ------
-    studies.kit.store.FolderError
-        If the table is not what its folder's provenance tells of.
-    studies.sources.registry.UnknownSourceError
-        If there is no such source.
+    An engine's best preset may be named or not.
     """
     if not FACTORS.is_file():
         return None

@@ -1,0 +1,409 @@
+"""Random cases that no setting was tuned on: as they are, at half the step, at published steps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from itertools import islice, pairwise
+from math import inf
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pandas as pd
+from cyclopts import Parameter
+
+from analytic import simulate
+from analytic.block import Rocker
+from analytic.response import Outcome
+from engines import ENGINES, installed_engines
+from studies.cases.drawn import Drawn, RandomCase, census, draw
+from studies.cases.refusal import BadInputError
+from studies.kit.arguments import Count, Positive, Yes, one_of, refuse_both, refuse_given
+from studies.kit.jobs import Job, Question, Row
+from studies.kit.options import CASE_BYTES, Computing, EffortOptions, Yours, refuse_excess
+from studies.kit.say import out_of, part
+from studies.kit.study import Study, Tables
+from studies.measures import differences, published
+from studies.measures.differences import WELL_CONDITIONED, conditioning_of, sensitivity_of
+from studies.measures.finer import with_every_finer
+from studies.measures.halving import (
+    BOUNDED,
+    CALIBRATE,
+    MOST_TRUSTED,
+    TEST,
+    estimates_of,
+    factors,
+    halved,
+)
+from studies.measures.published import PUBLISHED, SETTING, TARGETS
+from studies.measures.wrongness import counted, wrong_in
+from studies.sources.registry import core_sources
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+CASES = {"": (500, 100), "halves": (300, 20), "published_steps": (500, 20)}
+TESTS = (100, 10)
+"""Number of random cases, in full and quickly: for each form, and of those that test factors."""
+SHARE_S, FEWEST = 20.0, 50
+"""Time for a published step [s], and of how many cases it is asked, however long they take."""
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Options(EffortOptions):
+    """Which random cases, and at which steps.
+
+    Attributes
+    ----------
+    halves
+        Run every engine at half its step, too, and find the factor with which the difference of
+        the two peaks bounds the error.
+    published_steps
+        Run every preset of the engines at each published step that keeps an error of 10 % on the
+        published cases.
+    cases
+        Number of random cases; by default 500, with --halves 300.
+    tests
+        Number of other random cases, on which the factors of --halves are tried; by default 100.
+    share
+        Time [s] for each of --published-steps, by default 20: where all cases would take longer
+        there are fewer, but at least 50.
+    seed
+        Seed of the random numbers, a positive whole number; another one draws other cases.
+    scene
+        block: one block that rocks. frame: a beam on 2 to 5 columns.
+    """
+
+    halves: bool = False
+    published_steps: bool = False
+    cases: Count | None = None
+    tests: Count | None = None
+    share: Positive | None = None
+    seed: Count = 1
+    scene: Annotated[Drawn, one_of(Drawn)] = "block"
+    yours: Yours = Yours()  # noqa: RUF009
+    yes: Yes = False
+
+    def settings(self, sources: Sequence[str], system: Rocker) -> dict[str, Row]:
+        """Return what the options set of each source."""
+        own = self.yours.options(sources, system)
+        return {source: {**self.options(source), **own[source]} for source in sources}
+
+    def refuse_conflicts(self) -> None:
+        """Refuse options that say nothing beside the others."""
+        refuse_both(halves=self.halves or None, published_steps=self.published_steps or None)
+        refuse_both(dt=self.yours.dt, step=self.step)
+        if not self.halves:
+            refuse_given({"tests": self.tests}, "only with --halves")
+        if not self.published_steps:
+            refuse_given({"share": self.share}, "only with --published-steps")
+            return
+        own = {"step": self.step, "accuracy": self.accuracy, **asdict(self.yours)}
+        scene = {"scene": None if self.scene == "block" else self.scene}
+        refuse_given({**own, **scene}, "only without --published-steps")
+
+
+def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
+    """Return the jobs in the order of the table: case by case, source by source."""
+    options.refuse_conflicts()
+    form = next((name for name in CASES if name and getattr(options, name)), "")
+    cases, tests = options.cases or CASES[form][quick], options.tests or TESTS[quick]
+    if form == "published_steps":
+        return _at_published_steps(sources, cases, options)
+    options.refuse_idle(sources)
+    if form == "halves":
+        return _with_halves(sources, cases, tests, options)
+    _refuse_too_much(f"--cases is {cases}", cases, sources, options)
+    return [
+        _job({"seed": options.seed}, case, source, settings)
+        for case in islice(draw(options.seed, options.scene), cases)
+        for source, settings in options.settings(sources, case.block).items()
+    ]
+
+
+def _refuse_too_much(asked: str, cases: int, sources: Sequence[str], options: Options) -> None:
+    everyone = ("exact", *sources)  # the exact solution says which cases are kept
+    Computing().refuse_too_much(asked, cases, everyone, yes=options.yes, effort=options)
+
+
+def _job(labels: Row, case: RandomCase, source: str, settings: Row) -> Job:
+    posed = Question(system=case.block, motion=case.motion)
+    return Job(labels={**labels, **asdict(case)}, case=posed, source=source, options=settings)
+
+
+def _with_halves(sources: Sequence[str], cases: int, tests: int, options: Options) -> list[Job]:
+    asked = f"--cases is {cases}, --tests {tests}"
+    _refuse_too_much(asked, cases + tests, 3 * tuple(sources), options)
+    found = []
+    for use, case in both_sets(cases, tests, options.seed, options.scene):
+        for source, settings in options.settings(sources, case.block).items():
+            job = _job({"set": use}, case, source, settings)
+            if (finer := halved(job)) is None:
+                words = "with --halves it must be an engine with steps that can be halved"
+                raise BadInputError(f"--sources is {source!r}; {words}")
+            pair = enumerate((job, finer))
+            found += [replace(each, labels={**job.labels, "half": half}) for half, each in pair]
+    return found
+
+
+def both_sets(
+    cases: int, tests: int, seed: int, scene: Drawn = "block"
+) -> Iterator[tuple[str, RandomCase]]:
+    """Yield cases that test, drawn with the seed, and cases that calibrate, with the next one.
+
+    Kept are those in which the exact solution rocks and survives.
+    """
+    for use, first, count in ((TEST, seed, tests), (CALIBRATE, seed + 1, cases)):
+        rocked = (
+            case
+            for case in draw(first, scene)
+            if simulate(case.block, case.motion).outcome is Outcome.ROCKED
+        )
+        for number, case in enumerate(islice(rocked, count)):
+            yield use, replace(case, case=number)
+
+
+def _at_published_steps(engines: Sequence[str], cases: int, options: Options) -> list[Job]:
+    if unknown := [name for name in engines if name not in installed_engines()]:
+        words = "with --published-steps it must be an installed engine, without a preset"
+        raise BadInputError(f"--sources is {unknown[0]!r}; {words}")
+    refuse_excess(f"--cases is {cases}", cases * CASE_BYTES)
+    drawn, share = list(islice(draw(options.seed), cases)), options.share or SHARE_S
+    known = published.settings(PUBLISHED, engines)
+    keeps = known["max_error"] <= max(TARGETS)
+    tried = known[with_every_finer(keeps, known["engine"], known["preset"])]
+    found = []
+    for line in tried.to_dict("records"):
+        labels = {name: line[name] for name in SETTING}
+        engine, preset, value = labels.values()
+        settings = published.options_at(ENGINES[engine].preset(preset), value)
+        first = drawn[: max(FEWEST, int(share / line["wall_s"]))]
+        found += [_job(labels, case, f"{engine}:{preset}", settings) for case in first]
+    return found
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return errors in bands and what was drawn; or factors; or errors at published steps."""
+    if "value" in rows:
+        return {"random": at_published_steps(rows)}
+    if "half" in rows:
+        lines = beside_errors(rows)
+        return {"estimate": rows, "estimates": lines, "factors": factors(lines)}
+    errors = _compared(rows.drop(columns="seed"))
+    scene: Drawn = "frame" if "load" in rows else "block"
+    left = census(int(rows["seed"].iloc[0]), rows["case"].nunique(), scene)
+    return {"errors": errors, "drawn": left, "bands": bands(errors)}
+
+
+def _compared(rows: pd.DataFrame) -> pd.DataFrame:
+    frames = "load" in rows
+    return (differences.with_reference_of_frames if frames else differences.with_reference)(rows)
+
+
+PEAKS, KAPPAS = (0.01, 0.1, 0.5), (10.0, 100.0)
+"""Where bands end: of the exact peak over θcr, and of the larger of κ and κη."""
+
+
+def bands(errors: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each source and band of the cases that survive in the exact solution."""
+    rocked = errors[errors["exact_outcome"] == "rocked"]
+    rocked = rocked.assign(size=rocked["error"].abs())
+    ways = {"peak": (rocked["exact_peak"], PEAKS), "κ": (conditioning_of(rocked), KAPPAS)}
+    found = []
+    for by, (values, ends) in ways.items():
+        between = [f"from {low:g} to {high:g}" for low, high in pairwise(ends)]
+        names = [f"below {ends[0]:g}", *between, f"above {ends[-1]:g}"]
+        band = pd.cut(values, [0.0, *ends, inf], right=False, labels=names)
+        rows = rocked.assign(by=by, band=band).sort_values("band", kind="stable")
+        lines = rows.groupby(["source", "by", "band"], sort=False, observed=True).agg(
+            cases=("agrees", "size"),
+            right=("agrees", "sum"),
+            median_error=("size", "median"),
+            max_error=("size", "max"),
+        )
+        found.append(lines.reset_index().astype({"band": str}))
+    return pd.concat(found, ignore_index=True)
+
+
+RESOLVED = 1e-9
+"""Errors below are as good as none: no estimate has to bound them."""
+
+
+def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows at the whole step, each with its estimate, and with the error over that.
+
+    The last is 0 where there is no error to speak of, nan unless both rocked.
+    """
+    whole = _compared(rows[rows["half"] == 0]).reset_index(drop=True)
+    whole["estimate"] = estimates_of(whole, rows[rows["half"] == 1], "set", "case")
+    errors = whole["error"].abs()
+    over = (errors / whole["estimate"]).where(errors > RESOLVED, 0.0)
+    return whole.assign(over=over.where(errors.notna() & whole["estimate"].notna()))
+
+
+_, OFF, CALM_OFF = published.COUNTS
+EDGE = 0.1 / WELL_CONDITIONED
+"""Relative change of a pulse that moves the peak of a well conditioned case by less than 10 %; a
+case that overturns is near the edge where so much less, or more, of the pulse does not."""
+
+
+def at_published_steps(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the error and the condition number of each setting and case, in four digits.
+
+    The error is that of the peak, 0 where both overturn or stay at rest, inf where the outcome is
+    another; the condition the larger of |κ|, |κη| and 1, of a case that overturns 1, or inf where
+    it is near the edge.
+    """
+    compared = differences.with_reference(rows)
+    error = compared["error"].abs().where(compared["agrees"], inf).fillna(0.0)
+    falls = compared["exact_outcome"] == "overturned"
+    amplitude = compared["amplitude_g"]
+    weaker, stronger = (
+        differences.exact_peaks(compared.assign(amplitude_g=amplitude * (1.0 + change)))[0]
+        for change in (-EDGE, EDGE)
+    )
+    at_edge = np.where(np.isinf(weaker) & np.isinf(stronger), 1.0, inf)
+    condition = conditioning_of(compared).mask(falls, pd.Series(at_edge, compared.index))
+    numbers = pd.DataFrame({"condition": condition, "error": error})
+    return compared[[*SETTING, "case"]].join(numbers.map("{:.4g}".format).astype(float))
+
+
+def finding(tables: Tables) -> str:
+    """Say what the sources predict; what bounds their errors; or which steps keep an error."""
+    if "random" in tables:
+        known = _at(tables["random"], max(TARGETS))
+        small, every = ((known[name] == 0).sum() for name in (CALM_OFF, OFF))
+        return (
+            f"{small} of {len(known)} settings that keep an error of {part(max(TARGETS))} on the "
+            f"published cases keep it on every well-conditioned random case, and {every} on all."
+        )
+    if "factors" in tables:
+        high = tables["factors"]["factor_95_high"]
+        good = high[high <= MOST_TRUSTED]
+        most = MOST_TRUSTED if good.empty else good.max()
+        return (
+            f"The difference from half the step, times at most {most:.2g}, bounds {part(BOUNDED)} "
+            f"of the errors with {out_of(len(good), len(high))} presets."
+        )
+    errors = tables["errors"]
+    if len(others := errors[errors["source"] != "exact"]):
+        errors = others
+    calm = errors["error"].abs().where(sensitivity_of(errors) < WELL_CONDITIONED)
+    lines = errors.assign(wrong=~errors["agrees"], calm=calm).groupby("source", sort=False)
+    order = lines.agg({"wrong": "sum", "calm": "max", "case": "size"})
+    order = order.sort_values(["wrong", "calm"], kind="stable").reset_index()
+    (best, wrong, peaks, cases), (worst, missed, off, _) = order.iloc[[0, -1]].to_numpy()
+    within = "" if math.isnan(peaks) else f", and well-conditioned peaks within {part(peaks)}"
+    loses = f"{missed} outcome{'s' if missed > 1 else ''}" if missed else f"peaks by {part(off)}"
+    other = f"; {worst} misses {loses}" if len(order) > 1 else ""
+    right = out_of(cases - wrong, cases)
+    return f"{best} predicts the outcome of {right} random cases{within}{other}."
+
+
+def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+    """Return the lines of each source, and the cases that say most."""
+    if "random" in tables:
+        table, small = tables["random"], f"κ < {WELL_CONDITIONED:g}"
+        known, most = _at(table, max(TARGETS)), part(max(TARGETS))
+        return {
+            "Random cases with a larger error, at all settings of a preset": off(table, OFF),
+            f"Those among them with {small}": off(table, CALM_OFF),
+            f"Settings with a random case of {small} that is off by more than {most}": (
+                known[known[CALM_OFF] > 0]
+            ),
+        }
+    if "factors" in tables:
+        return {"Estimates, errors, and the factors between them": tables["factors"]}
+    errors, s = tables["errors"], sensitivity_of(tables["errors"])
+    return {
+        "Errors of the peak where both survive": quantiles(errors),
+        f"The same where S < {WELL_CONDITIONED:g}: by how many per cent a peak moves\nfor one of "
+        "the pulse, or of the velocity ratio of impacts": quantiles(errors[s < WELL_CONDITIONED]),
+        "Errors over S": quantiles(errors.assign(error=errors["error"] / s)),
+        **{f"In bands of {by}": each for by, each in tables["bands"].groupby("by", sort=False)},
+        "The largest errors": worst(errors),
+        "Cases that were drawn": tables["drawn"],
+    }
+
+
+def _at(table: pd.DataFrame, target: float) -> pd.DataFrame:
+    """Return the settings of random.csv, with how many of their cases are off an error."""
+    return published.counted(table[SETTING].drop_duplicates(), table, target)
+
+
+def off(table: pd.DataFrame, name: str) -> pd.DataFrame:
+    """Return how many cases are off at all settings of each preset, a column for each error."""
+    found = pd.concat([_at(table, target).assign(target=f"{target:g}") for target in TARGETS])
+    uses = ["engine", "preset", "random_cases"]
+    by_use = found.groupby([*uses[:2], "target"], sort=False)[[uses[2], name]].sum().reset_index()
+    return by_use.pivot_table(name, uses, "target", sort=False).astype(int).reset_index()
+
+
+def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each source: outcomes right and wrong, and quantiles of the error."""
+    levels = {"median_error": 0.5, "p90_error": 0.9, "p99_error": 0.99, "max_error": 1.0}
+    return pd.DataFrame(
+        [
+            {
+                "source": source,
+                "cases": len(rows),
+                "agree": rows["agrees"].sum(),
+                **counted(wrong_in(rows)),
+                **{name: rows["error"].abs().quantile(level) for name, level in levels.items()},
+            }
+            for source, rows in errors.groupby("source", sort=False)
+        ]
+    )
+
+
+POSED = ("columns", "load", "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p")
+
+
+def worst(errors: pd.DataFrame, count: int = 5) -> pd.DataFrame:
+    """Return some cases that each source gets wrong, and then those in which it errs most."""
+    size = errors["error"].abs().where(errors["agrees"], inf)
+    order = errors.assign(size=size).sort_values("size", ascending=False)
+    first = order.groupby("source").head(count).sort_values("source", kind="stable")
+    posed = [name for name in POSED if name in order]
+    found = ["outcome", "exact_outcome", "exact_peak", "error"]
+    return first[["source", "case", *posed, *found, "kappa", "kappa_eta", "sensitivity"]]
+
+
+def figures(tables: Tables) -> Mapping[str, Figure]:
+    """Draw the errors in bands of the sensitivity, or the errors over their estimates."""
+    from studies.drawing.validate import draw_conditioning, draw_estimates
+
+    if "factors" in tables:
+        lines = tables["estimates"]
+        return {"estimate": draw_estimates(lines[lines["set"] == CALIBRATE])}
+    return {"validate": draw_conditioning(tables["errors"])} if "errors" in tables else {}
+
+
+STUDY = Study(
+    name="validate",
+    question="Do the sources predict random cases that no setting was tuned on?",
+    help="""Random blocks: H/B from 1.2 to 12, B from 0.02 to 10 m; pulses of 1.02 to 4 onsets.
+
+Outcomes, quantiles of the error, and how far a small error of the pulse moves the peak of each
+case: its condition numbers, and its sensitivity to errors of 1e-6 and 1e-4. Writes errors.csv,
+drawn.csv and bands.csv. With --halves it writes estimate.csv, estimates.csv and factors.csv: how
+far off an answer is according to the engine itself at half the step. With --published-steps it
+writes random.csv, which `rocking advise` reads. Each needs a folder of its own.""",
+    sources=core_sources(),
+    options=Options,
+    quick="Fewer random cases: 100; with --halves 20 and 10 that test, with --published-steps 20.",
+    jobs=jobs,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    captions={
+        "validate": "Errors of random cases in bands of S, how far small errors of the pulse or of "
+        "the impacts move a peak: for each engine the middle half, the median, and the ends.",
+        "estimate": "Part of the cases whose true error is within so many times the engine's own "
+        "estimate of it, the difference from half the step; a line for each engine, by preset.",
+    },
+)
+command = STUDY.command()
