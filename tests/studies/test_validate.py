@@ -1,269 +1,292 @@
-"""Random cases: the draw, the condition number, the report."""
+"""Random cases: what is drawn, errors in bands, estimates from half the step, published steps."""
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 from itertools import islice
 
+import numpy as np
 import pandas as pd
 import pytest
+from commanding import refused
+from given import BLOCK, PULSE
 
-from analytic import conditioning, frame_faults, simulate
-from analytic.response import Outcome
+from analytic import frame_faults, simulate
 from engines.layouts import BEAM_DEPTH, SPACING
 from studies import respond
-from studies.__main__ import run
-from studies.cases.drawn import FRICTION, LEAST_NORMAL, SLIDES, TIPS, draw, everything, fate_of
-from studies.old.journal import FolderError
-from studies.old.options import EffortOptions, Running
-from studies.old.plan import fill
-from studies.measures.differences import (
-    sensitivity_of,
-    with_conditioning,
-    with_reference,
-    with_reference_of_frames,
+from studies.__main__ import run as run_command
+from studies.cases.drawn import FRICTION, KEPT, LEAST_NORMAL, census, draw, everything, fate_of
+from studies.kit.jobs import Job, Question
+from studies.kit.run import run
+from studies.kit.study import Tables
+from studies.measures.differences import sensitivity_of
+from studies.measures.halving import (
+    CALIBRATE,
+    FACTORS,
+    MOST_TRUSTED,
+    TEST,
+    Trust,
+    estimate_of,
+    factors,
+    halved,
+    interval,
+    published_trust,
+    step_of,
 )
-from studies.measures.halving import ELSEWHERE, published_trust
-from studies.validate import STUDY
-from studies.validate.claims import (
-    bands,
-    bounded,
-    finding,
-    quantiles,
-    worst,
-)
-from studies.validate.study import plan, report
-
-ALONE = Running(jobs=1)
+from studies.measures.published import PUBLISHED
+from studies.sources.registry import core_sources
+from studies.validate import STUDY, Options, bands, beside_errors, finding, jobs, quantiles, worst
 
 
 def test_cases_keep_their_ranges_and_their_reference_valid():
     first, again, other = (list(islice(draw(seed), 40)) for seed in (3, 3, 4))
     assert first == again != other
     for case in first:
-        assert 1.2 <= case.aspect <= 12
-        assert 0.02 <= case.width_m <= 10
-        assert 1.02 <= case.amplitude_g * case.aspect <= 4
-        assert 0.3 <= case.omega_over_p <= 12
+        assert 1.2 <= case.aspect <= 12 and 0.02 <= case.width_m <= 10
+        assert 1.02 <= case.amplitude_g * case.aspect <= 4 and 0.3 <= case.omega_over_p <= 12
         assert simulate(case.block, case.motion).min_normal > LEAST_NORMAL
 
 
-def test_random_frames_keep_their_ranges_and_their_reference_valid():
-    kept = list(islice(draw(1, "frame"), 100))
-    assert {case.columns for case in kept} == {2, 3, 4, 5}
-    assert all(0.1 <= case.load <= 10.0 for case in kept)
-    assert [case.case for case in kept] == list(range(100))
-    fates = {}
-    for drawn, exact in islice(everything(1, "frame"), 100):
+def test_random_frames_that_are_left_out_have_the_fault_that_is_named():
+    assert {case.columns for case in islice(draw(1, "frame"), 20)} == {2, 3, 4, 5}
+    for drawn, exact in islice(everything(1, "frame"), 40):
         frame, fate = drawn.block, fate_of(drawn, exact)
         sizes = {"spacing": SPACING * frame.height, "depth": BEAM_DEPTH * frame.height}
         faults = frame_faults(frame, drawn.motion, friction=FRICTION, **sizes)
-        fates.setdefault(fate, []).append(faults)
-    assert all(not faults for faults in fates["kept"])
-    assert all("would slide" in faults[0] for faults in fates[SLIDES])
-    assert all("the beam would tip" in faults[0] for faults in fates[TIPS])
+        words = {KEPT: "", "slides": "would slide", "tips": "the beam would tip"}.get(fate)
+        assert words is None or (words in faults[0] if words else not faults)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("preset", "most"), [("landing", 1e-4), ("fixed", 1e-2)])
-def test_forty_random_frames_in_mujoco(preset, most):
-    """The first that survive by the exact solution, and whose peak moves by less than 10 times."""
-    errors: list[float] = []
-    for case in draw(1, "frame"):
-        block, motion = case.block, case.motion
-        exact, (kappa, _) = simulate(block, motion), conditioning(block, motion)
-        if exact.outcome is Outcome.ROCKED and abs(kappa) < 10.0:
-            found = respond(f"mujoco:{preset}", block, motion)
-            errors.append(abs(found.peak_ratio / exact.peak_ratio - 1.0))
-        if len(errors) == 40:
-            break
-    assert max(errors) < most
+def table(rows, **columns):
+    """Return rows of sources that survive, as errors.csv has them, with some other values."""
+    names = ("aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p")
+    ordinary = {
+        **dict.fromkeys((*names, "kappa", "kappa_eta", "sensitivity"), 2.0),
+        **dict.fromkeys(("outcome", "exact_outcome"), "rocked"),
+        **{"agrees": True, "exact_peak": 0.3, "error": 0.0, "case": range(len(rows))},
+    }
+    return pd.DataFrame({"source": rows, **ordinary, **columns})
 
 
-def test_frames_are_held_against_their_own_reference():
-    """Row by row by the exact solution; κ by the peak of a pulse that is a millionth stronger."""
-    cases = list(islice(draw(3, "frame"), 12))
-    table = pd.DataFrame(
-        {name: getattr(case, name) for name in (*PULSED, "columns", "load")} for case in cases
+def test_bands_hold_the_errors_of_what_survives():
+    errors = table(
+        ["mujoco"] * 5,
+        exact_peak=[0.005, 0.05, 0.1, 0.7, math.inf],
+        exact_outcome=["rocked"] * 4 + ["overturned"],
+        agrees=[True, True, True, False, True],
+        error=[3.66, -0.2, 1e-3, math.nan, math.nan],
+        kappa=[76.0, 2.0, 10.0, -300.0, math.nan],
+        kappa_eta=[1.0, 3.0, 1.0, 1.0, math.nan],
     )
-    rows = with_reference_of_frames(table.assign(outcome="rocked", peak_ratio=0.5))
-    rocked = rows["exact_outcome"] == "rocked"
-    assert 2 <= rocked.sum() < len(rows)
-    for case, row in zip(cases, rows.to_dict("records"), strict=True):
-        exact = simulate(case.block, case.motion)
-        assert row["exact_outcome"] == exact.outcome.value
-        assert row["agrees"] == (exact.outcome.value == "rocked")
-        if row["agrees"]:
-            assert row["exact_peak"] == pytest.approx(exact.peak_ratio, rel=1e-9)
-            assert row["error"] == pytest.approx(0.5 / exact.peak_ratio - 1.0, rel=1e-9)
-            stronger = replace(case.motion, amplitude=(1.0 + 1e-6) * case.motion.amplitude)
-            moved = simulate(case.block, stronger).peak_ratio / exact.peak_ratio - 1.0
-            assert 1e6 * moved == pytest.approx(row["kappa"], rel=1e-3)
-        else:
-            assert math.isnan(row["error"])
-
-
-PULSED = ("case", "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p")
-
-
-@pytest.mark.slow
-def test_the_command_asks_random_frames(tmp_path, capsys):
-    asked = ["validate", "--scene", "frame", "--cases", "5", "--sources", "mujoco:landing"]
-    assert run([*asked, "--out", str(tmp_path), "--jobs", "1"]) == 0
-    assert "2 to 5 columns" in capsys.readouterr().out
-    errors = pd.read_csv(tmp_path / "errors.csv")
-    assert errors["agrees"].all()
-    judged = errors["error"].abs() / sensitivity_of(errors)
-    assert judged.max() < 1e-5
-    drawn = pd.read_csv(tmp_path / "drawn.csv").set_index("set")["cases"]
-    assert drawn["kept"] == 5
-    assert drawn["drawn"] == drawn[["kept", "near", "lifted", SLIDES, TIPS]].sum()
-
-
-def test_a_report_counts_the_cases_that_were_drawn(tmp_path):
-    fill(STUDY, plan(60, 5, ["exact"]), tmp_path, ALONE)
-    report(tmp_path)
-    table = pd.read_csv(tmp_path / "drawn.csv", keep_default_na=False).set_index("set")
-    errors = pd.read_csv(tmp_path / "errors.csv")
-    assert table.loc["kept", "cases"] == len(errors) == 60
-    assert table.loc["kept", "overturned"] == (errors["exact_outcome"] == "overturned").sum()
-    assert table.loc["drawn", "cases"] == table.loc["kept":, "cases"].sum()
-
-
-def test_condition_number_of_a_block_that_overturns_is_no_number():
-    case = pd.DataFrame(
-        {"aspect": [4.0], "amplitude_g": [2.0], "omega_over_p": [0.5], "half_cycles": [1]}
-    )
-    assert with_conditioning(case)[["kappa", "kappa_eta"]].isna().all(axis=None)
-
-
-NEAR_ONSET = {
-    "aspect": 9.174363250019729 / 1.5256313519414122,
-    "amplitude_g": 0.17396032278997067,
-    "omega_over_p": 1.6703236997469597,
-    "half_cycles": 2,
-}
-"""An uplift that comes with a ten thousandth less of the pulse: the peak is 68 % larger."""
-
-
-def test_errors_are_judged_against_what_finite_errors_do():
-    table = pd.DataFrame([NEAR_ONSET]).assign(source="box2d", outcome="rocked", peak_ratio=0.016)
-    case = with_reference(table)
-    assert abs(case["kappa"][0]) < 100 and abs(case["kappa_eta"][0]) < 100
-    assert sensitivity_of(case)[0] == case["sensitivity"][0] == pytest.approx(6775, abs=1)
-    assert with_reference(case).equals(case)  # a table has the columns added that it lacks
-    kappas = case.assign(kappa=1e5, kappa_eta=-2e5)
-    assert sensitivity_of(kappas)[0] == 2e5
-
-
-def test_the_headline_says_the_largest_errors_as_they_are():
-    rows = pd.DataFrame(
-        {
-            "source": ["mujoco", "mujoco", "box2d", "box2d"],
-            "error": [1e-6, 0.47, -0.02, 0.95],
-            **dict.fromkeys(["kappa", "kappa_eta"], 2.0),
-            "sensitivity": [2.0, 1e4, 2.0, 1e4],
-            "agrees": True,
-            **dict.fromkeys(["outcome", "exact_outcome"], "rocked"),
-            **dict.fromkeys(["aspect", "width_m", "half_cycles", "omega_over_p"], 2.0),
-            "amplitude_g": 0.6,
-        }
-    )
-    claim = finding(rows)
-    assert "off by up to 47 % and 95 %; where neither" in claim
-    assert "reaches 10, by 10⁻⁶ and 2 %." in claim
-
-
-def test_errors_are_shown_as_they_are_in_bands_of_peak_and_kappa():
-    rows = pd.DataFrame(
-        {
-            "source": ["mujoco"] * 5,
-            "exact_peak": [0.005, 0.05, 0.1, 0.7, math.inf],
-            "exact_outcome": ["rocked"] * 4 + ["overturned"],
-            "agrees": [True, True, True, False, True],
-            "error": [3.66, -0.2, 1e-3, math.nan, math.nan],
-            "kappa": [76.0, 2.0, 10.0, -300.0, math.nan],
-            "kappa_eta": [1.0, 3.0, 1.0, 1.0, math.nan],
-        }
-    )
-    table = bands(rows)
-    found = table.set_index(["by", "band"])
+    found = bands(errors).set_index(["by", "band"])
     assert list(found["cases"]) == [1, 1, 1, 1, 1, 2, 1]
-    assert found.loc[("peak", "from 0.1 to 0.5"), "max_error"] == 1e-3
     assert found.loc[("peak", "above 0.5"), "right"] == 0
     assert found.loc[("κ", "from 10 to 100"), "max_error"] == 3.66
-    assert math.isnan(found.loc[("κ", "above 100"), "max_error"])
     assert list(found.loc["peak", "median_error"].dropna()) == [3.66, 0.2, 1e-3]
-    (line,) = quantiles(rows.assign(outcome="rocked")).to_dict("records")
+    (line,) = quantiles(errors.assign(outcome="rocked")).to_dict("records")
     assert (line["cases"], line["agree"], line["fall_wrong"]) == (5, 4, 1)
     assert (line["median_error"], line["max_error"]) == (0.2, 3.66)
 
 
-def test_the_worst_case_is_one_that_is_wrong():
-    columns = ["aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p", "exact_peak"]
-    rows = pd.DataFrame(
-        {
-            "source": ["mujoco"] * 4 + ["box2d"],
-            "case": [0, 1, 2, 3, 0],
-            "error": [0.1, -0.4, math.nan, 0.2, 0.9],
-            "agrees": [True, True, False, True, True],
-            **dict.fromkeys(["outcome", "exact_outcome"], "rocked"),
-            **dict.fromkeys([*columns, "kappa", "kappa_eta", "sensitivity"], 2.0),
-        }
+def test_the_worst_cases_are_those_that_are_wrong():
+    errors = table(
+        ["mujoco"] * 4 + ["box2d"],
+        error=[0.1, -0.4, math.nan, 0.2, 0.9],
+        agrees=[True, True, False, True, True],
     )
-    shown = worst(rows, 2)
-    assert list(zip(shown["source"], shown["case"], strict=True)) == [
-        ("box2d", 0),
-        ("mujoco", 2),
-        ("mujoco", 1),
+    shown = worst(errors, 2)
+    pairs = list(zip(shown["source"], shown["case"], strict=True))
+    assert pairs == [("box2d", 4), ("mujoco", 2), ("mujoco", 1)]
+
+
+def test_the_finding_names_who_predicts_most_and_who_misses_most():
+    errors = table(
+        ["exact"] * 2 + ["mujoco"] * 2 + ["box2d"] * 2,
+        error=[0.0, 0.0, 1e-6, 0.47, math.nan, 0.02],
+        sensitivity=[2.0, 1e4] * 3,
+        agrees=[True] * 4 + [False, True],
+    )
+    words = finding({"errors": errors})
+    assert "mujoco" in words and "all 2" in words and "10⁻⁶" in words
+    assert "box2d misses 1 outcome." in words and "exact" not in words and "47 %" not in words
+
+
+@pytest.mark.parametrize(
+    ("whole", "half", "found"),
+    [
+        (("rocked", 0.303), ("rocked", 0.3), 0.01),
+        (("rocked", 0.3), ("overturned", math.inf), math.inf),
+        (("overturned", math.inf), ("overturned", math.inf), 0.0),
+        (("at rest", 0.0), ("at rest", 0.0), 0.0),
+        (("failed", math.nan), ("rocked", 0.3), math.nan),
+        (("rocked", 0.3), ("failed", math.nan), math.nan),
+    ],
+)
+def test_an_estimate_is_the_difference_of_two_runs(whole, half, found):
+    rows = [dict(zip(("outcome", "peak_ratio"), pair, strict=True)) for pair in (whole, half)]
+    assert estimate_of(*rows) == pytest.approx(found, nan_ok=True)
+
+
+def job(source, **options):
+    return Job(labels={}, case=Question(system=BLOCK, motion=PULSE), source=source, options=options)
+
+
+@pytest.mark.parametrize("source", [*core_sources("", "naive"), "pymunk:fixed"])
+def test_half_the_step_takes_about_twice_the_steps(source):
+    asked = job(source) if source.endswith("naive") else job(source, step=0.02)
+    finer = halved(asked)
+    assert finer.options["step"] == 0.5 * step_of(asked)
+    whole, half = (respond(j.source, BLOCK, PULSE, **j.options).steps for j in (asked, finer))
+    assert 1.4 < half / whole < 2.2  # landing steps spend some on impacts whatever the step is
+
+
+def test_the_step_of_a_job_is_that_of_its_preset_or_its_own():
+    assert step_of(job("mujoco", accuracy="tight")) == 1.0 / 800
+    assert step_of(job("mujoco", accuracy="tight", step=0.01)) == 0.01
+    assert "accuracy" not in halved(job("mujoco", accuracy="tight")).options
+    assert [halved(job(source)) for source in ("exact", "rk4", "dop853")] == [None] * 3
+
+
+def estimated(errors, differences, use=CALIBRATE):
+    """Return the lines of estimates.csv for cases whose errors and estimates are given."""
+    exact = respond("exact", BLOCK, PULSE).peak_ratio
+    posed = {"aspect": 3.0, "half_cycles": 2, "amplitude_g": PULSE.amplitude / BLOCK.gravity}
+    rows = [
+        {"case": case, "source": "mujoco:naive", **posed, "omega_over_p": PULSE.omega / BLOCK.p}
+        | {"outcome": "rocked", "peak_ratio": ratio, "half": half, "set": use}
+        for case, (error, difference) in enumerate(zip(errors, differences, strict=True))
+        for half, ratio in enumerate(
+            (exact * (1.0 + error), exact * (1.0 + error) / (1.0 + difference))
+        )
     ]
+    return beside_errors(pd.DataFrame(rows))
 
 
-def test_a_folder_grows_and_its_report_says_what_is_exact(tmp_path):
-    fill(STUDY, plan(4, 5, ["exact"]), tmp_path, ALONE)
-    kept = (tmp_path / "journal.jsonl").read_text().splitlines()
-    rows = fill(STUDY, plan(9, 5, ["exact", "housner"]), tmp_path, ALONE)
-    assert len(rows) == 18
-    assert (tmp_path / "journal.jsonl").read_text().splitlines()[: len(kept)] == kept
-    report(tmp_path)
-    errors = pd.read_csv(tmp_path / "errors.csv").set_index("source")
-    assert errors.loc["exact", "agrees"].all()
-    assert (errors.loc["exact", "error"].dropna().abs() < 1e-9).all()
-    assert set(pd.read_csv(tmp_path / "bands.csv")["source"]) == {"exact", "housner"}
+def test_a_factor_is_a_quantile_of_error_over_estimate_and_tried_on_other_cases():
+    found = estimated([1e-3 * n for n in range(1, 101)], [1e-3] * 100)
+    assert found["over"].to_numpy() == pytest.approx(range(1, 101), rel=1e-6)
+    other = estimated([0.02, 0.2], [1e-3] * 2, use=TEST)
+    (line,) = factors(pd.concat([found, other])).to_dict("records")
+    factor = [line[f"factor_{part}"] for part in ("50", "95", "all")]
+    assert factor == pytest.approx([50, 95, 100], rel=1e-6)
+    assert line["factor_95_low"] < 95.0 < line["factor_95_high"]
+    assert (line["within_3"], line["cases"], line["tested"], line["bounded"]) == (0.02, 100, 2, 1)
+    # an error that is none needs no estimate
+    assert list(estimated([1e-11, 1e-3], [0.0, 0.0])["over"]) == [0.0, math.inf]
+
+
+@pytest.mark.parametrize(
+    ("count", "last"), [(0, math.inf), (71, math.inf), (72, 72.0), (300, 293.0)]
+)
+def test_the_upper_end_of_a_factor_is_one_of_the_values_or_there_is_none(count, last):
+    """All of 71 values are below the 95 % quantile with 0.95^71 = 0.026 > 2.5 %."""
+    assert interval(np.arange(1.0, count + 1.0))[1] == last
+
+
+def test_above_thirty_estimates_there_is_no_bound():
+    assert Trust(MOST_TRUSTED, 300).holds and not Trust(31.0, 300).holds
+    assert "31" in Trust(31.0, 90).warning() and "7" in Trust(math.inf, 7).warning()
+    known = pd.DataFrame({"source": ["mujoco", "dart"], "factor_95_high": [1.6, 48.0]})
+    assert "1.6" in (words := finding({"factors": known})) and "1 of 2" in words
+    assert "none of 1" in finding({"factors": known[1:]})
+    published = pd.read_csv(FACTORS).set_index("source")["factor_95_high"]
+    assert published_trust("mujoco:landing").factor == published["mujoco"]
+    assert published_trust("moreau") is None
+
+
+def test_published_tables_follow_from_published_rows():
+    tables = {name: STUDY.read(PUBLISHED / name) for name in ("validate", "estimate")}
+    errors, lines = tables["validate"]["errors"], tables["estimate"]["estimates"]
+    for made, kept in (
+        (bands(errors), tables["validate"]["bands"]),
+        (census(1, 500), tables["validate"]["drawn"]),
+        (factors(lines), tables["estimate"]["factors"]),
+    ):
+        pd.testing.assert_frame_equal(made, kept, check_dtype=False, rtol=1e-12)
+
+
+def tables_of(*sources, **options) -> Tables:
+    asked = jobs(sources, False, Options(**options))
+    return STUDY.tabulate(pd.DataFrame(run(asked, STUDY.measure)))
+
+
+def test_every_draw_is_counted_and_the_exact_solution_has_no_error():
+    tables = tables_of("exact", "housner", cases=30, seed=5)
+    errors, drawn = tables["errors"].set_index("source"), tables["drawn"].set_index("set")["cases"]
+    assert drawn["kept"] == 30 and drawn["drawn"] == drawn[["kept", "near", "lifted"]].sum()
+    assert errors.loc["exact", "error"].abs().max() < 1e-9 < errors.loc["housner", "error"].max()
     assert (errors["sensitivity"] >= 0.0).all()
-    assert errors.loc["housner", "error"].abs().max() > 1e-3
 
 
-def test_random_cases_carry_estimates_and_what_these_bound(tmp_path):
-    asked = plan(4, 5, ["exact", "mujoco", "moreau"], EffortOptions(step=0.02), estimate=True)
-    rows = fill(STUDY, asked, tmp_path, ALONE)
-    halves = [row for row in rows if row["table"] == "halves"]
-    assert [(row["case"], row["source"]) for row in halves] == [
-        (case, source) for case in range(4) for source in ("mujoco", "moreau")
+def test_cases_that_test_come_first_each_with_its_half():
+    tables = tables_of("mujoco", halves=True, cases=2, tests=1, seed=3)
+    rows = tables["estimate"]
+    assert list(rows["half"]) == [0, 1] * 3 and list(rows["set"]) == [TEST] * 2 + [CALIBRATE] * 4
+    # of second order: half the step has a fourth of the error, the difference is three fourths
+    assert tables["estimates"]["over"].to_numpy() == pytest.approx([4.0 / 3.0] * 3, rel=0.1)
+
+
+def test_frames_are_drawn_and_compared_with_their_own_reference():
+    errors = tables_of("mujoco", scene="frame", cases=2)["errors"]
+    assert errors["agrees"].all() and {"columns", "load"} <= {*errors}
+    assert (errors["error"].abs() / sensitivity_of(errors)).max() < 1e-5
+
+
+def test_published_steps_that_keep_an_error_are_tried_on_random_cases():
+    asked = jobs(("mujoco",), False, Options(published_steps=True, cases=2))
+    values = {job.labels["value"] for job in asked if job.labels["preset"] == "fixed"}
+    assert len(asked) == 2 * len({(j.labels["preset"], j.labels["value"]) for j in asked}) > 10
+    assert all(j.options == {"step": j.labels["value"]} for j in asked) and max(values) < 2e-3
+
+
+def test_another_outcome_is_off_and_an_overturning_near_the_edge_is_no_calm_case():
+    case = next(case for case in draw(1) if simulate(case.block, case.motion).peak_ratio < 0.5)
+    factor = np.geomspace(1.0, 50.0, 4000)
+    posed = [replace(case, amplitude_g=case.amplitude_g * by) for by in factor]
+    falls = np.array([simulate(one.block, one.motion).peak_ratio == math.inf for one in posed])
+    near, far = (posed[np.argmax(falls & (factor > above))] for above in (1.0, 30.0))
+    rows = [
+        {"engine": "mujoco", "preset": "landing", "value": 0.01, **asdict(one)}
+        | {"outcome": outcome, "peak_ratio": 0.3, "source": "mujoco"}
+        for one in (near, far)
+        for outcome in ("rocked", "overturned")
     ]
-    text = report(tmp_path)
-    errors = pd.read_csv(tmp_path / "errors.csv").set_index(["source", "case"])
-    finer = {row["case"]: row["peak_ratio"] for row in halves if row["source"] == "mujoco"}
-    assert errors.loc["exact", ["estimate", "bound"]].isna().all(axis=None)
-    mine = errors.loc["mujoco"]
-    known = mine[mine["outcome"] == "rocked"]
-    assert len(known)
-    for case, row in known.iterrows():
-        assert row["estimate"] == pytest.approx(abs(row["peak_ratio"] / finer[case] - 1), rel=1e-12)
-        bound = row["estimate"] * published_trust("mujoco").factor
-        assert row["bound"] == pytest.approx(bound, rel=1e-12)
-    line, other = bounded(errors.reset_index()).to_dict("records")
-    assert line["factor"] == published_trust("mujoco").factor
-    assert line["survivors"] == len(known)
-    assert line["bounded"] == (known["error"].abs() <= known["bound"]).sum()
-    assert other["source"] == "moreau" and math.isnan(other["factor"]) and not other["bounded"]
-    assert errors.loc["moreau", "bound"].isna().all()
-    assert f"({ELSEWHERE})" in text
+    tables = STUDY.tabulate(pd.DataFrame(rows))
+    assert tables["random"]["error"].tolist() == [math.inf, 0.0, math.inf, 0.0]
+    assert tables["random"]["condition"].tolist() == [math.inf, math.inf, 1.0, 1.0]
+    assert finding(tables).startswith("0 of 1 settings")
+    every, calm, _ = STUDY.shown(tables).values()
+    assert every["0.1"].tolist() == [2] and calm["0.1"].tolist() == [1]
 
 
-def test_a_model_has_no_half_steps_and_another_seed_is_refused(tmp_path):
-    fill(STUDY, plan(2, 5, ["exact"], estimate=True), tmp_path, ALONE)
-    text = report(tmp_path)
-    assert "half the step" not in text
-    assert not (tmp_path / "halves.csv").exists()
-    with pytest.raises(FolderError, match="settings"):
-        fill(STUDY, plan(2, 2, ["exact"]), tmp_path, ALONE)
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("--halves --published-steps", "give one or the other"),
+        ("--tests 3", "--tests is 3; it may be given only with --halves"),
+        ("--share 3", "only with --published-steps"),
+        ("--published-steps --step 0.1", "--step is 0.1; it may be given only without"),
+        ("--published-steps --scene frame", "--scene is frame"),
+        ("--published-steps --friction 0.3", "--friction is 0.3"),
+        ("--published-steps --sources mujoco:fixed", "--sources is 'mujoco:fixed'; with"),
+        ("--halves --sources exact", "--sources is 'exact'; with --halves it must be an engine"),
+        ("--halves --sources drake", "steps that can be halved"),
+        ("--sources exact --step 0.1", "--sources must name a solver or an engine"),
+        ("--dt 0.01 --step 0.1 --sources mujoco:fixed", "--dt is 0.01 and --step is 0.1"),
+        ("--cases 100000 --step 1e-6", "needs --yes"),
+        ("--cases 1000000000", "GB of memory"),
+        ("--cases 0", "--cases is '0'"),
+        ("--scene slide", "among block, frame"),
+        ("--seed -1", "--seed is '-1'"),
+    ],
+)
+def test_refusals(options, words, tmp_path, capsys):
+    refused(capsys, ["validate", "--out", tmp_path / "new", *options.split()], words)
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_folder_of_one_form_is_refused_to_another(tmp_path, capsys):
+    few = ["validate", "--cases", "2", "--jobs", "1", "--sources", "mujoco", "--out", tmp_path]
+    assert run_command([str(word) for word in few]) == 0
+    capsys.readouterr()
+    refused(capsys, [*few, "--halves"], str(tmp_path), "folder")
+    refused(capsys, [*few, "--seed", "2"], str(tmp_path), "folder")
