@@ -42,8 +42,8 @@ def draw_conditioning(errors: pd.DataFrame) -> Figure:
         words = f"from {start:g}" if end == inf else f"{start:g} to {end:g}" if start else "below 3"
         axes.set_title(f"S {words}: {cases['case'].nunique()} cases", fontsize=10)
     drawing.supxlabel(
-        "relative error of the peak;  S: by how many per cent a peak moves for 1 % of the pulse, or "
-        "of an impact's velocity ratio",
+        "relative error of the peak;  S: by how many per cent a peak moves for 1 % of the pulse "
+        "or of an impact's velocity ratio",
         fontsize=10,
     )
     drawing.suptitle(_title(list(bands.items())), fontsize=12)
