@@ -18,7 +18,7 @@ from studies.cases.paper import PULSES, sweep_cases
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
-from studies.measures.claims import claim, table_of
+from studies.measures.claims import Finding, table_of
 from studies.measures.differences import posed_cases
 
 if TYPE_CHECKING:
@@ -119,14 +119,11 @@ def errors_on(name: str, changed: str) -> pd.DataFrame:
 def line(errors: pd.DataFrame) -> Row:
     """Return what some cases have in common; errors are relative, differences in theta_cr."""
     error, apart = errors["error"].abs(), errors["difference"].abs()
-    numbers = (error.median(), _rms(error), error.max(), _rms(apart), apart.max())
     wrong = {name: int(errors[name].sum()) for name in WRONG}
-    sizes = dict(zip(ERRORS, map(float, numbers), strict=True))
+    rms = [float(np.sqrt((values**2).mean())) for values in (error, apart)]
+    numbers = (float(error.median()), rms[0], float(error.max()), rms[1], float(apart.max()))
+    sizes = dict(zip(ERRORS, numbers, strict=True))
     return {"cases": len(errors), **wrong, "survivors": int(error.count()), **sizes}
-
-
-def _rms(values: pd.Series[float]) -> float:
-    return float(np.sqrt((values**2).mean()))
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
@@ -136,24 +133,21 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     slender = rows[[*who, "by_aspect"]].explode("by_aspect", ignore_index=True)
     by_aspect = slender[who].join(pd.DataFrame(slender["by_aspect"].tolist()))
     quantiles = rows[[*who, *lists]].explode(lists, ignore_index=True)
-    tested = [frequency_matters(lines), maps_mislead(by_aspect), modified_is_better(by_aspect)]
     return {
         "linearizations": lines.assign(title=[VARIANTS[word].title for word in lines["changed"]]),
         "quantiles": quantiles.astype(dict.fromkeys(lists, float)),
         "slenderness": by_aspect,
-        "findings": table_of(tested),
+        "findings": table_of(conclusions(lines, by_aspect)),
     }
 
 
 def finding(tables: Tables) -> str:
     """Say which of the three changes, made alone, brings Housner's linearization closest."""
-    lines = tables["linearizations"]
-    medians = lines[lines["grid"] == "paper"].set_index("changed")["median_error"]
+    medians = tables["linearizations"].query("grid == 'paper'").set_index("changed")["median_error"]
     best = str(medians[list(CHANGES)].idxmin())
-    before, after = part(medians["000"]), part(medians[best])
     return (
         f"Housner's linearization errs most in its {CHANGES[best]} its median error falls from "
-        f"{before} to {after} on the paper's cases."
+        f"{part(medians['000'])} to {part(medians[best])} on the paper's cases."
     )
 
 
@@ -177,40 +171,43 @@ def figures(tables: Tables) -> Mapping[str, Figure]:
     return {"linearizations": draw_distributions(tables["quantiles"], titles, NAMED)}
 
 
-@claim("(a) p√cos α in place of p brings a linearization closer, other things being equal")
-def frequency_matters(lines: pd.DataFrame) -> tuple[bool, str]:
-    """Change the frequency alone, with either onset and either saddle."""
+def conclusions(lines: pd.DataFrame, slender: pd.DataFrame) -> list[Finding]:
+    """Test what the paper concludes, on the lines of each grid and on those by H/B."""
     medians = lines.set_index(["grid", "changed"])["median_error"]
-    pairs = [(grid, onset, saddle) for grid in GRIDS for onset in "01" for saddle in "01"]
-    closer = [medians[g, f"{o}1{s}"] < medians[g, f"{o}0{s}"] for g, o, s in pairs]
-    return all(closer), f"the median error falls in {out_of(sum(closer), len(closer))} comparisons"
-
-
-@claim("(b) Housner's linearization overturns blocks that survive, also at H/B of 3 and more")
-def maps_mislead(slender: pd.DataFrame) -> tuple[bool, str]:
-    """Count what Housner's linearization overturns falsely, also where H/B is 3 or more."""
-    words, fallen = [], {}
+    closer = [
+        medians[name, f"{onset}1{saddle}"] < medians[name, f"{onset}0{saddle}"]
+        for name, onset, saddle in product(GRIDS, "01", "01")
+    ]
+    fallen, words = {}, []
     for name, rows in slender[slender["changed"] == "000"].groupby("grid", sort=False):
-        all_, tall = (part[["false", "cases"]].sum() for part in (rows, rows[rows["aspect"] >= 3]))
+        whole, tall = (it[["false", "cases"]].sum() for it in (rows, rows[rows["aspect"] >= 3.0]))
         fallen[name] = tall["false"] > 0
         words.append(
-            f"{name} grid: {out_of(*all_)} falsely overturned, at H/B ≥ 3 {out_of(*tall)}; "
+            f"{name} grid: {out_of(*whole)} falsely overturned, at H/B ≥ 3 {out_of(*tall)}; "
             f"{rows['missed'].sum()} missed"
         )
-    return bool(fallen["paper"]), "; ".join(words)
-
-
-@claim("(c) The modified linearization is closer than Housner's at every slenderness tried")
-def modified_is_better(slender: pd.DataFrame) -> tuple[bool, str]:
-    """Compare median errors and wrong outcomes at every slenderness."""
     wide = slender[slender["grid"] == "wide"].set_index(["changed", "aspect"])
-    ours, housners = wide.loc["111"], wide.loc["000"]
-    closer = ours["median_error"] < housners["median_error"]
-    as_right = ours["wrong"] <= housners["wrong"]
-    counts = [out_of(each.sum(), len(ours)) for each in (closer, as_right)]
-    return bool((closer & as_right).all()), (
-        f"closer in the median at {counts[0]} values of H/B, and wrong no more often at {counts[1]}"
-    )
+    ours, theirs = wide.loc["111"], wide.loc["000"]
+    nearer = ours["median_error"] < theirs["median_error"]
+    as_right = ours["wrong"] <= theirs["wrong"]
+    return [
+        Finding(
+            "(a) p√cos α in place of p brings a linearization closer, other things being equal",
+            all(closer),
+            f"the median error falls in {out_of(sum(closer), len(closer))} comparisons",
+        ),
+        Finding(
+            "(b) Housner's linearization overturns blocks that survive, also at H/B of 3 and more",
+            bool(fallen["paper"]),
+            "; ".join(words),
+        ),
+        Finding(
+            "(c) The modified linearization is closer than Housner's at every slenderness tried",
+            bool((nearer & as_right).all()),
+            f"closer in the median at {out_of(nearer.sum(), len(ours))} values of H/B, and wrong "
+            f"no more often at {out_of(as_right.sum(), len(ours))}",
+        ),
+    ]
 
 
 STUDY = Study(

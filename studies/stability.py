@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 
 SOLVERS = ("rk4", "average-acceleration", "dop853", "radau")
 METHODS = ("exact", *SOLVERS, *core_sources("", "fixed", "naive"))
-LIMIT_S, ANSWER_S = 180.0, 54.0
-"""Time limit of a row [s], and what its answer may take of it."""
+LIMIT_S, TRIED_S, ANSWER_S = 180.0, 120.0, 54.0
+"""Time limit of a row [s], when no further setting is tried, and what its answer may take."""
 ANSWER_STEPS, REMEDY_STEPS, SEARCH_STEPS = 5_000_000, 2_000_000, 500_000
-"""Steps that an answer, a remedy and a run of a search may take, so that none of these depends on a
-clock unless all together take longer than the row may."""
+"""Steps that an answer, a remedy and a run of a search may take, so that these depend on a clock
+only where all together take longer than TRIED_S."""
 FINER, FINEST = 5e-4, 1e-4
 """p dt of the remedy for steps that land on impacts, and for equal ones."""
 NOTHING = "none of those tried"
@@ -70,15 +70,17 @@ def _job(case: Extreme, source: str, options: Mapping[str, Any], **labels: Any) 
 
 def measure(job: Job) -> Row:
     """Return the verdict on an answer and the first setting that mends it, or the largest steps."""
-    until, label, lost = perf_counter() + 0.9 * LIMIT_S, job.labels, job.lost
+    until, label, lost = perf_counter() + TRIED_S, job.labels, job.lost
     searched = label["table"] == "steps"
     cases = PROBLEMS if searched else extremes(False)
     case = next(case for case in cases if case.name == label["case"])
 
     def tried(
-        source: str, options: Mapping[str, Any], steps: int, most_s: float = LIMIT_S
+        source: str, options: Mapping[str, Any], steps: int, most_s: float = TRIED_S
     ) -> Response:
-        left = max(min(most_s, until - perf_counter()), 1.0)
+        left = min(most_s, until - perf_counter())
+        if left <= 0.0:
+            return Response.failure("no time was left to try it", reason=Reason.UNDECIDED)
         limits = {"time_limit_s": left, "max_steps": steps} if resolve(source).engine else {}
         return ask(replace(job, source=source, options={**options, **limits}))
 
