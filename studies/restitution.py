@@ -1,0 +1,269 @@
+"""A block that strikes its base with a corner: which coefficient of restitution an engine gives.
+
+At the impact an impulse acts on the striking corner alone. Held by friction, that corner goes on
+without sliding, and upwards with e times the speed 2 b omega of its approach, b being half the
+width. The moment of momentum about it is kept: (4/3) R^2 (omega - omega') = 2 b^2 (1 + e) omega,
+so that omega'/omega = 1 - (3/2) (1 + e) sin(alpha)^2, which for e = 0 is Housner's. The other
+corner leaves the base upwards as long as sin(alpha)^2 < 2/3, so that there is no impulse on it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING, cast
+
+import pandas as pd
+from cyclopts import Parameter
+
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
+from engines import ENGINES, installed_engines
+from engines.run.drive import build
+from engines.world import ContactPhase, Pose, Step, SteppedWorld
+from studies.cases.refusal import BadInputError
+from studies.cases.ways import WAYS, WITHOUT
+from studies.kit.arguments import Engines
+from studies.kit.jobs import Job, Question, Row
+from studies.kit.say import capital, one_line, out_of
+from studies.kit.study import Study, Tables
+from studies.sources.registry import scene_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WANTED = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
+"""Coefficients of restitution."""
+PHASES = (0.1, 0.5, 0.9)
+"""Parts of a step after which the impact falls."""
+VARIED = {
+    "p_dt": (1e-3, 1e-4, 4e-3),
+    "rate_over_alpha_p": (0.5, 0.1, 2.0),
+    "height_m": (1.0, 0.1, 10.0),
+    "aspect": (2.0, 4.0),
+}
+"""Step, angular rate at the impact, H and H/B: the usual value of each, and others."""
+USUAL = {name: usual for name, (usual, *_) in VARIED.items()}
+AHEAD, PATIENCE = 20, 40
+"""Steps to that of the impact, and steps after it in which the corner must come off again."""
+RISING, BROKEN = 0.01, 10.0
+"""Ratios of a corner's speed: up to the first it stays, from the second on it was thrown."""
+SHOWN, MISSED = 0.6, 0.5
+"""The coefficient for which settings are quoted, and a difference by which one is missed."""
+STILL = SinePulse(amplitude=0.0, omega=1.0, half_cycles=1)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Which engines.
+
+    Attributes
+    ----------
+    engines
+        Names of engines, without a preset.
+    """
+
+    engines: Engines = tuple(name for name in installed_engines() if name in WAYS)
+
+
+def jobs(_: Sequence[str], __: bool, options: Options) -> list[Job]:
+    """Return a job for each engine, way to ask it, and strike, one thing varied at a time."""
+    for name in options.engines:
+        if name not in WAYS:
+            why = f", which has no coefficient: {WITHOUT[name]}" if name in WITHOUT else ""
+            able = f"it must be one that was tried: {', '.join(WAYS)}"
+            raise BadInputError(f"--engines is {name!r}{why}; {able}")
+    others = [(name, {name: value}) for name, all_ in VARIED.items() for value in all_[1:]]
+    strikes = list(product([("", {}), *others], WANTED, PHASES))
+    return [
+        job_of(engine, way, wanted, phase, name, **other)
+        for engine in options.engines
+        for way in WAYS[engine]
+        for (name, other), wanted, phase in strikes
+    ]
+
+
+def job_of(
+    engine: str, way: str, wanted: float, phase: float = 0.5, varied: str = "", **other: float
+) -> Job:
+    """Return the job of a strike, which begins some steps before the impact."""
+    step, rate, height, aspect = (USUAL | other).values()
+    block = RigidBlock(width=height / aspect, height=height)
+    tilt = (AHEAD + phase) * rate * block.alpha * step
+    omega, rise = rate * block.p * block.alpha, math.cos(block.alpha - tilt) - math.cos(block.alpha)
+    start = (-tilt, math.sqrt(omega**2 - 2.0 * block.p**2 * rise))
+    settings = dict(WAYS[engine][way].settings(wanted, step / block.p))
+    labels = {"engine": engine, "way": way, "varied": varied, "wanted": wanted, "phase": phase}
+    return Job(
+        labels={**labels, **USUAL, **other},
+        case=Question(system=block, motion=STILL, start=start),
+        source=f"{engine}:fixed",
+        options={"step": step, "settings": settings},
+    )
+
+
+def measure(job: Job) -> Row:
+    """Return what the block keeps: of its angular rate, and of the speed of the striking corner.
+
+    All is nan where the library says that it went wrong, which counts as broken, or fails.
+    """
+    nothing = (math.nan, math.nan, math.nan)
+    found, outcome, message = nothing, "failed", job.lost.message if job.lost else ""
+    try:
+        if not job.lost:
+            struck, message = strike(job)
+            found, outcome = nothing if message else struck, "struck"
+    except Exception as error:
+        message = one_line(error)
+    sine_2 = math.sin(job.case.system.alpha) ** 2
+    return {
+        "kept_ratio": 1.0 - 1.5 * (1.0 + job.labels["wanted"]) * sine_2,
+        **dict(zip(("rate_ratio", "corner_ratio", "slide_ratio"), found, strict=True)),
+        **{"outcome": outcome, "message": message},
+    }
+
+
+def strike(job: Job) -> tuple[tuple[float, float, float], str]:
+    """Let a block strike its base; return what it keeps, and what the library says went wrong.
+
+    That is the rate after over before, and the speeds of the corner, upwards and along the base,
+    over that of its approach. Where the corner comes off, the block flies, and its rate is read
+    there; where it stays, the block turns about it, and its rate is taken back to the impact.
+    """
+    case, labels = job.case, job.labels
+    scene = scene_of(case.system, case.motion, job.asked.preset, **job.settings)
+    world = cast("SteppedWorld", build(job.asked.declared, scene))
+    block = cast("RigidBlock", case.system)
+    half_width, half_height = 0.5 * block.width, 0.5 * block.height
+    dt, omega = labels["p_dt"] / block.p, labels["rate_over_alpha_p"] * block.p * block.alpha
+    approach = 2.0 * half_width * omega
+
+    def corner(pose: Pose) -> tuple[float, float]:
+        """Return where the striking corner is along and above the base [m]."""
+        sine, cosine = math.sin(pose.theta), math.cos(pose.theta)
+        along = pose.x + half_width * cosine - half_height * sine
+        return along, pose.z - half_width * sine - half_height * cosine
+
+    try:
+        pose, kick, slide = Pose(*world.state()[0]), world.moment.value * dt, 0.0
+        for number in range(AHEAD + 1 + PATIENCE):
+            (x, z), end = corner(pose), (number + 1) * dt
+            pull = -block.gravity * kick / dt
+            world.step(Step(dt, end, kick, 0.0, pull, 0.0, 0.0, 0.0, ContactPhase.SWING, 0.0))
+            pose, kick = Pose(*world.state()[0]), dt
+            new_x, new_z = corner(pose)
+            rise, slide = (new_z - z) / dt / approach, (new_x - x) / dt / approach
+            if z > 0.0 and rise > RISING:
+                return (pose.rate / omega, rise, slide), world.fault()
+        fall = math.cos(block.alpha - abs(pose.theta)) - math.cos(block.alpha)
+        at_level = math.sqrt(pose.rate**2 + 2.0 * block.p**2 * fall)
+        return (math.copysign(at_level, pose.rate) / omega, 0.0, slide), world.fault()
+    finally:
+        world.close()
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return the strikes, and for each way how far off the corner's speed and the rate are."""
+    struck = rows.drop(columns=["source", "outcome", "message"])
+    return {
+        "restitution": struck,
+        "corners": deviations(struck, "corner_ratio", "wanted"),
+        "rates": deviations(struck, "rate_ratio", "kept_ratio"),
+    }
+
+
+def deviations(rows: pd.DataFrame, found: str, right: str) -> pd.DataFrame:
+    """Return a line for each engine and way: how far one column is from another at most."""
+    off = (rows[found] - rows[right]).abs().where(rows["corner_ratio"] < BROKEN, math.inf)
+    rows = rows.assign(off=off, slide=rows["slide_ratio"].abs())
+    table = []
+    for (engine, way), group in rows.groupby(["engine", "way"], sort=False):
+        by = group.groupby("varied")["off"].max().reindex(["", *USUAL])
+        table.append(
+            {
+                **{"engine": engine, "way": way, "off": by[""]},
+                **{f"off_{name}": by[name] for name in USUAL},
+                **{"off_over_all": by.max(), "broken": int((group["off"] == math.inf).sum())},
+                "slide": group.loc[group["varied"] == "", "slide"].max(),
+                "literal": WAYS[str(engine)][str(way)].literal(SHOWN),
+            }
+        )
+    return pd.DataFrame(table)
+
+
+def best_ways(corners: pd.DataFrame) -> pd.DataFrame:
+    """Return the line of the way in which each engine is off least, whatever is varied."""
+    ordered = corners.sort_values(["off_over_all", "off"], kind="stable")
+    return ordered.drop_duplicates("engine").sort_index()
+
+
+def finding(tables: Tables) -> str:
+    """Say how many engines miss a coefficient that is set plainly, and how well all keep it."""
+    corners = tables["corners"]
+    plain = corners.drop_duplicates("engine")
+    within = f"within {best_ways(corners)['off_over_all'].max():.2g}"
+    if len(plain) == 1:
+        title = ENGINES[plain["engine"].iloc[0]].title
+        return f"{title} keeps a coefficient of restitution {within} with its best settings."
+    missed = capital(out_of((plain["off"] > MISSED).sum(), len(plain)))
+    return (
+        f"{missed} engines miss a coefficient of restitution that is set in the plainest way, "
+        f"and with their best settings all keep it {within}."
+    )
+
+
+def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+    """Return the deviations of each way, what it sets, and what was varied."""
+    corners, off = tables["corners"], r"^(engine|way|off)"
+    others = [", ".join(f"{value:g}" for value in values[1:]) for values in VARIED.values()]
+    varied = {"varied": [*USUAL], "usual": [*USUAL.values()], "others": others}
+    return {
+        "What was varied, one at a time, wherever in a step the impact falls": pd.DataFrame(varied),
+        "Largest difference of the corner's speed, after over before, from the coefficient; its "
+        "speed along the base; strikes that broke": corners.filter(regex=f"{off}|broken|slide"),
+        f"What is set for {SHOWN:g}; DT is the step [s]": corners[["engine", "way", "literal"]],
+        "Largest difference of the block's angular rate, after over before, from 1 - 3/2 (1 + e) "
+        "sin^2(alpha)": tables["rates"].filter(regex=off),
+        "Without a coefficient": pd.DataFrame(list(WITHOUT.items()), columns=["engine", "instead"]),
+    }
+
+
+def figures(tables: Tables) -> Mapping[str, Figure]:
+    """Draw the largest deviations, and the strikes of each engine's plainest and best ways."""
+    from studies.drawing.restitution import draw_deviations, draw_strikes
+
+    corners, rates = tables["corners"], tables["rates"]
+    return {
+        "corners": draw_deviations(corners, rates),
+        "strikes": draw_strikes(tables["restitution"], corners, best_ways(corners)),
+    }
+
+
+STUDY = Study(
+    name="restitution",
+    question="Which setting gives which coefficient of restitution?",
+    help="""The speed of a corner that strikes the base, once, after over before.
+
+For coefficients from 0 to 1, wherever in a step the impact falls, and at another step, rate, height
+or slenderness; and what the block keeps of its angular rate. Half a minute. Writes restitution.csv,
+corners.csv, rates.csv, findings.txt and two pictures.""",
+    options=Options,
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    texts=("way", "varied", "literal"),
+    captions={
+        "corners": "How far the speed of a corner that strikes the base, after over before, is at "
+        "most from the coefficient that was asked for, and the block's angular rate from the one "
+        'that follows; a row for each way to ask, where "and" adds to the one before.',
+        "strikes": "Speed of the striking corner over the coefficient that was asked for, in each "
+        "engine's plainest and best way, this one with a band for all that was varied.",
+    },
+)
+command = STUDY.command()
