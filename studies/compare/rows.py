@@ -1,10 +1,12 @@
 """Every source asked about one case, and each answer beside the exact solution."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import replace
 from statistics import median
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from analytic import RigidBlock, RockingFrame, frame_faults, simulate
 from analytic.motion import Motion, SinePulse
@@ -15,15 +17,16 @@ from engines.layouts import BEAM_DEPTH, SPACING, System
 from studies.cases.paper import free_rocking_window
 from studies.cases.refusal import BadInputError
 from studies.kit.jobs import Job, Question, Row, ask, summary
-from studies.kit.options import Yours
 from studies.kit.run import Place, here, run
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import ELSEWHERE, estimate_of, halved, published_trust
 from studies.sources.registry import DEFAULT_EFFORT, Effort
 
+if TYPE_CHECKING:
+    from studies.kit.options import Yours  # it loads the parser, which workers do without
+
 EDGE, TIMED_IMPACTS = 0.01, 5
 """Part of the amplitude that should not decide who overturns; first impacts that are compared."""
-NOT_YOURS = Yours()
 COLUMNS = (
     *("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message", "error"),
     *("velocity_ratio", "impact_error", "kappa", "sensitivity", "estimate", "bound"),
@@ -45,7 +48,7 @@ def compare(
     *,
     place: Place = here,
     effort: Effort = DEFAULT_EFFORT,
-    yours: Yours = NOT_YOURS,
+    yours: Yours | None = None,
     estimate: bool = False,
 ) -> list[Row]:
     """Ask every source, and the exact solution besides; return a row for each.
@@ -54,7 +57,7 @@ def compare(
     both rock; `velocity_ratio` is the median, `impact_error` the largest of the first impacts in
     units of 1/p; `estimate` needs every engine at half its step.
     """
-    own = yours.options(sources, case.system)
+    own = yours.options(sources, case.system) if yours else {}
     jobs = [
         Job(labels={}, case=case, source=name, options=effort.options(name) | own.get(name, {}))
         for name in dict.fromkeys(["exact", *sources])
@@ -70,9 +73,9 @@ def compare(
     for name, row in rows.items():
         row |= {**_beside(row["response"], exact, case.system.p), **known, "exact": exact}
         if estimate:
-            own_steps = effort.own and yours.dt is None
+            own_steps = effort.own and (yours is None or yours.dt is None)
             row |= _estimated(row, halves.get(name), case.system, own_steps)
-    said = (rows["exact"]["message"], *_faults(case, exact, yours.friction))
+    said = (rows["exact"]["message"], *_faults(case, exact, yours.friction if yours else None))
     rows["exact"]["message"] = "; ".join(filter(None, said))
     return [rows[name] for name in sources]
 

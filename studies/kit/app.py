@@ -15,10 +15,10 @@ import sys
 import threading
 from collections.abc import Mapping, Sequence
 from importlib import import_module
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from studies.kit import say
+from studies.kit.postponed import postpone
 
 if TYPE_CHECKING:
     from cyclopts import App, UnknownOptionError
@@ -34,7 +34,7 @@ RETIRED = {
     "versions": "score --against",
 }
 """Commands that answer for one release that they are gone, and what does their work."""
-PLACES = {"report": "page.report", "readme": "page.readme"}
+PLACES = {"compare": "compare.command", "report": "page.report", "readme": "page.readme"}
 """Command -> its module, where that has another name."""
 REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
 """A refusal of a value, whoever finds it: "width is 0; it must be positive"."""
@@ -148,7 +148,7 @@ def _version() -> str:
 def _answer(commands: Mapping[str, str], arguments: Sequence[str]) -> int:
     from cyclopts import CycloptsError, UnknownOptionError
 
-    sys.modules.setdefault("pandas", Postponed("pandas"))
+    postpone("pandas")
     if "--version" in arguments and len(arguments) > 1:
         words = f"--version is one of {len(arguments)} arguments; it must stand alone"
         return say.refuse(words)
@@ -192,20 +192,3 @@ def _unknown_option(error: UnknownOptionError) -> str:
     command = " ".join(error.command_chain or ())
     able = f"did you mean {near[0]}?" if near else f"it takes {', '.join(options)}"
     return f"{given} is no option of {command or 'rocking'}; {able}"
-
-
-class Postponed(ModuleType):
-    """Stands for a module until an attribute of it is asked for.
-
-    The loader that the standard library has for this loads a module where it is imported a second
-    time.
-    """
-
-    def __getattr__(self, attribute: str) -> Any:
-        """Load the module, and return its attribute."""
-        name = self.__name__
-        if sys.modules.get(name) is self:
-            sys.modules.pop(name, None)
-        loaded = import_module(name)
-        self.__dict__.update(loaded.__dict__)
-        return getattr(loaded, attribute)

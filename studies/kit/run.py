@@ -1,5 +1,7 @@
 """Jobs side by side: measured where they may fail, kept in a store, counted by a bar."""
 
+from __future__ import annotations
+
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -8,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 from math import tan
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from tqdm import tqdm
@@ -22,10 +24,12 @@ from engines.run.monitor import compile_monitor
 from studies.cases.refusal import BadInputError
 from studies.kit.identity import Maker, maker_of
 from studies.kit.jobs import Job, Row, ask, unanswered
-from studies.kit.options import Computing
 from studies.kit.say import say
 from studies.kit.store import Store
 from studies.kit.workers import MEMORY_BYTES, Lost, answers
+
+if TYPE_CHECKING:
+    from studies.kit.options import Computing  # it loads the parser, which workers do without
 
 FEW = 32
 """Jobs up to which to interpret takes less time than to load what is compiled."""

@@ -20,6 +20,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
+from studies.kit.postponed import postpone
 from studies.kit.say import one_line
 
 MEMORY_BYTES = 4_000_000_000
@@ -157,6 +158,7 @@ def _prepare() -> None:
 
 def _serve(channel: Connection) -> None:
     _prepare()
+    postpone("pandas")  # a measure's module imports it; few measures use it
     me = os.getpid()
     while True:
         try:

@@ -195,7 +195,7 @@ def test_what_arithmetic_raises_is_one_line_and_what_a_mistake_does_is_not(
     def broken(*_, **__):
         raise error
 
-    monkeypatch.setattr("studies.compare.compare", broken)
+    monkeypatch.setattr("studies.compare.command.compare", broken)
     line = ["compare", *CASE, "--sources", "exact"]
     if error in BY_MISTAKE:
         with pytest.raises(type(error)):
