@@ -1,0 +1,304 @@
+"""A comparison: in JSON, as a table, from Python; its notes on edges, friction and estimates."""
+
+import json
+import math
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from commanding import CASE, compared, python, refused
+from given import BLOCK, PULSE
+
+import studies
+from analytic import SinePulse, Still, simulate
+from engines import ENGINES
+from studies import respond, side_by_side
+from studies.__main__ import run
+from studies.measures.halving import published_trust
+
+FIELDS = [
+    *("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
+    *("error", "velocity_ratio", "impact_error", "kappa", "sensitivity"),
+    *("min_normal", "friction_needed", "valid"),
+]
+WINDOW = PULSE.duration + 8.0 / BLOCK.p
+NEEDED = simulate(BLOCK, PULSE).friction_needed
+
+
+def text_of(capsys, *options):
+    """Run a comparison and return its text."""
+    capsys.readouterr()
+    assert run(["compare", *map(str, options)]) == 0
+    return capsys.readouterr().out
+
+
+def test_json_is_one_object_a_line_and_nothing_else():
+    sources = ["exact", "housner", "modified", "pybullet", "mujoco"]
+    asked = ["compare", *CASE, "--pulse", "full-sine", "--sources", *sources, "--json"]
+    done = python("-m", "studies", *asked)
+    assert (done.returncode, done.stderr) == (0, "")
+    rows = [json.loads(line, parse_constant=pytest.fail) for line in done.stdout.splitlines()]
+    assert [row["source"] for row in rows] == sources
+    assert all(list(row) == FIELDS for row in rows)
+    found = {row["source"]: row for row in rows}
+    fallen, exact = found.pop("housner"), found["exact"]
+    nothing = ("peak_ratio", "error", "impact_error")
+    assert [fallen["outcome"], *(fallen[name] for name in nothing)] == ["overturned", *[None] * 3]
+    late = {name: row["impact_error"] for name, row in found.items()}
+    assert max(late["pybullet"], late["mujoco"]) < 1e-4 < late["modified"] < 0.3
+    assert (exact["error"], late["exact"], exact["valid"]) == (0.0, 0.0, True)
+    for row in found.values():
+        assert (row["outcome"], row["friction_needed"]) == ("rocked", exact["friction_needed"])
+        assert row["peak_ratio"] == pytest.approx(0.3852, rel=0.07)
+        relative = row["peak_ratio"] / exact["peak_ratio"] - 1.0
+        assert row["error"] == pytest.approx(relative, rel=1e-12)
+        assert row["velocity_ratio"] == pytest.approx(0.85, rel=1e-4)
+        assert row["impacts"] >= 3 and row["steps"] > 0 and row["wall_s"] > 0.0
+
+
+def test_kappa_and_sensitivity_are_of_the_case_and_null_where_an_outcome_changes(capsys):
+    near_onset = [
+        *("--width", "1.5256313519414122", "--height", "9.174363250019729"),
+        *("--pulse", "full-sine", "--omega", "2.10102467443576", "--sources", "exact", "housner"),
+    ]
+    code, rows = compared(capsys, *near_onset, "--amplitude", "0.17396032278997067")
+    assert (code, len(rows)) == (0, 2)
+    for row in rows.values():
+        assert row["kappa"] == pytest.approx(45.237, abs=1e-3)
+        assert row["sensitivity"] == pytest.approx(6775, abs=1)
+    onset = 1.5256313519414122 / 9.174363250019729
+    _, rows = compared(capsys, *near_onset, "--amplitude", onset * (1.0 + 5e-5))
+    assert (rows["exact"]["outcome"], rows["exact"]["sensitivity"]) == ("rocked", None)
+
+
+def test_a_gentle_pulse_leaves_the_block_at_rest(capsys):
+    gentle = [*CASE[:4], "--amplitude", "0.2", *CASE[6:]]
+    _, rows = compared(capsys, *gentle, "--sources", "exact", "housner")
+    assert [(row["outcome"], row["peak_ratio"]) for row in rows.values()] == [("at rest", 0.0)] * 2
+
+
+def test_the_table_fits_the_screen_and_a_plot_is_drawn(capsys, tmp_path):
+    plot = tmp_path / "histories.png"
+    sources = ["rk4", "average-acceleration", "housner"]
+    text = text_of(capsys, *CASE, "--duration", 2.5, "--sources", *sources, "--plot", plot)
+    assert max(len(line) for line in text.splitlines()) <= 100
+    assert "observed for 2.5 s" in text and "0.850000" in text
+    assert not re.search("^ *exact ", text, re.MULTILINE)
+    assert plot.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_block_is_released_from_a_tilt_in_units_of_alpha(capsys):
+    """Its first impact comes after a quarter period, the same in every source."""
+    options = ["--tilt", "-0.6", "--duration", "2", "--sources"]
+    _, found = compared(capsys, *CASE[:4], *options, "exact", "dop853", "pybullet", "mujoco")
+    rows = [*found.values()]
+    assert [row["peak_ratio"] for row in rows] == pytest.approx([0.6] * 4, rel=1e-12)
+    # landing steps of p dt = 1/200 are of second order
+    assert all(row["impact_error"] < 200**-2 for row in rows)
+    exact = simulate(BLOCK, Still(), start=(-0.6 * BLOCK.alpha, 0.0), duration=2.0)
+    assert rows[0]["impacts"] == len(exact.impacts)
+    assert rows[0]["min_normal"] == exact.min_normal
+
+
+@pytest.mark.parametrize("turned", [[], ["--degrees"]])
+def test_rate_phase_and_degrees(turned, capsys):
+    theta, rate = 0.2 * BLOCK.alpha, -0.3 * BLOCK.alpha * BLOCK.p
+    unit = (math.radians(1.0),) * 3 if turned else (BLOCK.alpha, BLOCK.alpha * BLOCK.p, 1.0)
+    tilt, turning, phase = (repr(x / u) for x, u in zip((theta, rate, 2.0), unit, strict=True))
+    start = ["--tilt", tilt, "--rate", turning, "--phase", phase, *turned]
+    row = compared(capsys, *CASE, *start, "--sources", "exact")[1]["exact"]
+    pulse = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2, phase=2.0)
+    exact = simulate(BLOCK, pulse, start=(theta, rate), duration=pulse.duration + 8.0 / BLOCK.p)
+    assert row["peak_ratio"] == pytest.approx(exact.peak_ratio, rel=1e-9)
+    assert row["impacts"] == len(exact.impacts)
+    head = text_of(capsys, *CASE, *start, "--sources", "exact")
+    assert ("θ = 0.2 α, θ' = -0.3 αp" in head) != bool(turned)
+    assert ("θmax [°]" in head) == bool(turned)
+
+
+def test_where_the_reference_is_not_valid(capsys):
+    """A squat block would have to be held down; of one that falls its fall does not count."""
+    squat = ["--width", "1", "--height", "1", "--omega", "15", "--sources", "exact"]
+    row = compared(capsys, *squat, "--amplitude", "2.5")[1]["exact"]
+    assert (row["valid"], row["min_normal"] < 0.0) == (False, True)
+    assert "lift off" in text_of(capsys, *squat, "--amplitude", "2.5")
+    slender = [*CASE[:4], "--amplitude", "1.0", "--omega", "3", "--sources", "exact"]
+    assert compared(capsys, *slender)[1]["exact"]["valid"] is True
+    assert "of the weight" in text_of(capsys, *slender)
+
+
+def test_half_cycles_replace_the_pulse(capsys):
+    names = ["--sources", "exact", "--duration", "3"]
+    two, full, three = (
+        compared(capsys, *CASE, *pulse, *names)[1]["exact"]["peak_ratio"]
+        for pulse in (["--half-cycles", "2"], ["--pulse", "full-sine"], ["--half-cycles", "3"])
+    )
+    assert two == full != three
+
+
+def test_a_slide_has_its_slips_and_a_frame_its_observables(capsys):
+    pulse = ["--amplitude", "0.4", "--omega", "6.2832"]
+    sizes = ["--width", "1", "--height", "0.5", "--scene", "slide", "--friction", "0.2"]
+    _, rows = compared(capsys, *sizes, *pulse)
+    assert {*rows} == {"exact", "pybullet", "mujoco"}
+    exact = rows["exact"]["slips"]
+    for row in rows.values():
+        off = max(abs(a - b) for a, b in zip(row["slips"], exact, strict=True))
+        assert row["error"] == pytest.approx(off / max(map(abs, exact)), rel=1e-12)
+        assert row["error"] < 1e-3 and row["kappa"] is None
+    frame = [*CASE[:4], "--scene", "frame", "--load", "2", *CASE[4:]]
+    _, rows = compared(capsys, *frame, "--sources", "exact", "mujoco:fixed")
+    assert {"parting", "tilt", "drift_m"} <= {*rows["mujoco:fixed"]}
+    assert abs(rows["mujoco:fixed"]["error"]) < 0.01
+
+
+def test_an_engine_is_asked_with_the_friction_and_the_step_that_are_given(capsys):
+    own = ["--friction", "0.8", "--dt", "0.002"]
+    code, rows = compared(capsys, *CASE, *own, "--sources", "exact", "mujoco:naive", "rk4")
+    assert (code, rows["exact"]["message"]) == (0, "")
+    given = {"step": 0.002 * BLOCK.p, "duration": WINDOW}
+    for name, options in (("mujoco:naive", {**given, "friction": 0.8}), ("rk4", given)):
+        answer = respond(name, BLOCK, PULSE, **options)
+        assert (rows[name]["peak_ratio"], rows[name]["steps"]) == (answer.peak_ratio, answer.steps)
+    other = respond("mujoco:naive", BLOCK, PULSE, **given)
+    assert other.peak_ratio != rows["mujoco:naive"]["peak_ratio"]
+
+
+@pytest.mark.parametrize(("part", "slides"), [(0.5, True), (1.1, False)])
+def test_the_exact_row_says_where_friction_is_too_low_for_it(part, slides, capsys):
+    given = ["--friction", str(part * NEEDED), "--sources", "exact", "pymunk:fixed"]
+    code, rows = compared(capsys, *CASE, *given)
+    assert (f"{NEEDED:.3g}" in rows["exact"]["message"]) == slides
+    assert ("slid" in rows["pymunk:fixed"]["message"]) == slides
+    assert code == int(slides)
+
+
+@pytest.mark.parametrize("kind", ["pulse", "record"])
+def test_an_answer_that_hangs_on_a_hundredth_of_the_amplitude_says_so(kind, tmp_path, capsys):
+    path = tmp_path / "record.csv"
+    lines = [f"{0.01 * n},{math.sin(0.062832 * n)}" for n in range(101)]
+    path.write_text("time_s,acceleration_g\n" + "\n".join(lines) + "\n")
+
+    def text(factor):
+        pulse = ["--amplitude", factor, "--omega", 6.2832]
+        record = ["--record", path, "--scale", factor, "--baseline", "none"]
+        given = pulse if kind == "pulse" else record
+        return text_of(capsys, *CASE[:4], *given, "--sources", "exact")
+
+    low, high = 0.4, 0.6
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if "overturned" in text(middle) else (middle, high)
+    below, above = text(low / 1.005).splitlines()[-1], text(high * 1.005).splitlines()[-1]
+    assert "1.01 times" in below and below.endswith("block overturns")
+    assert "0.99 times" in above and above.endswith("does not overturn")
+    assert "times it" not in text(low / 1.02) + text(high * 1.02)
+
+
+def cells_of(text):
+    """Return the cells of a comparison's table by source and column; no cell has a blank in it."""
+    lines = text.splitlines()
+    head = next(number for number, line in enumerate(lines) if line.split()[:1] == ["source"])
+    names = lines[head].replace("vs exact", "vs-exact").replace("bound 95 %", "bound").split()
+    rows = (re.sub(r"(?<=[0-9]) (?=[mµ]?s\b)", "", line).split() for line in lines[head + 1 :])
+    return {row[0]: dict(zip(names, row, strict=True)) for row in rows if len(row) == len(names)}
+
+
+def test_the_table_has_kappa_and_the_sensitivity_and_estimates_where_asked_for(capsys):
+    asked = [*CASE, "--sources", "exact", "mujoco:fixed", "--dt", "0.001", "--estimate"]
+    rows, table = compared(capsys, *asked)[1], cells_of(text_of(capsys, *asked))
+    for source, row in rows.items():
+        assert table[source]["κ"] == f"{row['kappa']:.2g}"
+        assert table[source]["sens"] == f"{row['sensitivity']:.2g}"
+    assert table["exact"]["estimate"] == "-" == table["exact"]["bound"]
+    engine, step = rows["mujoco:fixed"], 0.5e-3 * BLOCK.p
+    finer = respond("mujoco:fixed", BLOCK, PULSE, duration=WINDOW, step=step).peak_ratio
+    assert engine["estimate"] == abs(engine["peak_ratio"] / finer - 1.0) > 0.0
+    assert engine["bound"] == published_trust("mujoco:fixed").factor * engine["estimate"]
+    found = side_by_side(BLOCK, PULSE, ["mujoco:fixed"], dt=0.001, estimate=True).iloc[0]
+    assert [found["estimate"], found["bound"]] == [engine["estimate"], engine["bound"]]
+    strong = text_of(capsys, *CASE[:4], *["--amplitude", "2", "--omega", "3", "--sources", "exact"])
+    row = cells_of(strong)["exact"]
+    assert (row["outcome"], row["κ"], row["sens"]) == ("overturned", "-", "0")
+
+
+def test_side_by_side_is_what_compare_tells(capsys):
+    names = ["exact", "housner", "mujoco:fixed"]
+    _, rows = compared(capsys, *CASE, "--friction", "0.8", "--sources", *names)
+    table = side_by_side(BLOCK, PULSE, (name for name in names), friction=0.8)
+    assert list(table["source"]) == names
+    assert list(table.columns) == list(rows["exact"])
+    for row in table.drop(columns="wall_s").to_dict("records"):
+        for name, value in row.items():
+            finite = not isinstance(value, float) or math.isfinite(value)
+            assert rows[row["source"]][name] == (value if finite else None)
+    assert table.set_index("source").loc["housner", "peak_ratio"] == math.inf
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        ({"sources": []}, r"sources is \[\]; it must be a list of one name or more"),
+        ({"sources": "exact"}, "sources is 'exact'; it must be a list"),
+        ({"sources": ["exat"]}, "source is 'exat', perhaps 'exact'; it must be one of exact"),
+        ({"sources": ["mujoco"], "dt": 0.002}, "^dt is 0.002; it must come with equal steps"),
+        ({"sources": ["rk4"], "dt": -1.0}, "^dt is -1; it must be"),
+        ({"sources": ["rk4"], "friction": 1.0}, "^friction is 1; it must come with an engine"),
+        ({"sources": ["mujoco"], "friction": math.nan}, "friction is nan; it must be a finite"),
+        ({"sources": ["exact"], "duration": 0.1}, "^duration is 0.1; it must be at least"),
+        ({"sources": ["rk4"], "dt": math.nan}, "^dt is nan; it must be a finite number"),
+        ({"sources": ["exact"], "start": (math.nan, 0.0)}, "^start is nan; it must be a finite"),
+        ({"sources": ["exact"], "start": (0.1, 0.0, 0.0)}, "^start is .* must be theta"),
+    ],
+)
+def test_side_by_side_refuses_what_cannot_be(options, problem):
+    with pytest.raises(ValueError, match=problem):
+        side_by_side(BLOCK, PULSE, **options)
+
+
+@pytest.mark.parametrize("option", ["friction", "dt", "duration", "start"])
+def test_side_by_side_takes_numbers_of_any_type(option):
+    def peak(value):
+        given = {option: (value, 0.0) if option == "start" else value}
+        return side_by_side(BLOCK, PULSE, ["mujoco:naive"], **given)["peak_ratio"].item()
+
+    value = np.float32({"duration": 2.7, "dt": 0.0021}.get(option, 0.3))
+    assert peak(value) == peak(float(value))
+
+
+def test_the_guide_s_python_runs_as_a_script_of_one_s_own(tmp_path):
+    """It has no guard by which other processes could be started from it."""
+    guide = (Path(studies.__file__).parent / "GUIDE.md").read_text()
+    code, _ = re.findall(r"^```python\n(.*?)^```$", guide, flags=re.DOTALL | re.MULTILINE)
+    script = tmp_path / "mine.py"
+    script.write_text(code + "print(table['peak_ratio'].tolist())\n")
+    root = str(Path(studies.__file__).parents[1])
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys, runpy; sys.path.insert(0, {root!r});"
+         f"runpy.run_path({str(script)!r}, run_name='__main__')"],
+        capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    (line,) = done.stdout.splitlines()
+    exact, engine = json.loads(line)
+    assert exact == pytest.approx(simulate(BLOCK, PULSE).peak_ratio, rel=1e-12)
+    assert 0.0 < engine < 1.0
+
+
+def test_every_engine_takes_a_friction_and_a_step():
+    names = [f"{name}:fixed" for name in ENGINES if ENGINES[name].installed and name != "newton"]
+    table = side_by_side(BLOCK, PULSE, names, friction=1.0, dt=0.001, duration=PULSE.duration)
+    assert set(table["outcome"]) <= {"rocked", "overturned"}
+    steps = table["steps"] * 0.001
+    assert steps.between(0.9 * PULSE.duration, 1.2 * PULSE.duration).all()
+
+
+def test_a_plot_that_cannot_be_written_is_refused_before_anything_runs(tmp_path, capsys):
+    refused(capsys, ["compare", *CASE, "--plot", tmp_path / "x.tif"], "--plot", ".png")
+    refused(capsys, ["compare", *CASE, "--plot", tmp_path / "no" / "x.png"], "--plot")
+    slide = ["--scene", "slide", "--friction", "0.2", "--plot", tmp_path / "x.png"]
+    refused(capsys, ["compare", *CASE, *slide], "--plot", "something rocks")
+    assert not list(tmp_path.iterdir())
