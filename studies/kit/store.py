@@ -299,9 +299,11 @@ def _said(row: Row, labels: Iterable[str]) -> str:
 def _unasked(row: Row, asked: Sequence[Row]) -> str:
     """Say what of a row is not asked for: its first label of another value, or its settings."""
     labels = list(asked[0]) if asked else ["source"]
+    if not row.keys() >= set(labels):
+        return "other options; use a new folder"
     for name in labels:
-        if row.get(name) not in [each.get(name) for each in asked]:
-            return f"{name} {row.get(name)}, which must be named too; or use a new folder"
+        if row[name] not in [each.get(name) for each in asked]:
+            return f"{name} {row[name]}, which must be named too; or use a new folder"
     return f"other settings ({_said(row, labels)}); use a new folder"
 
 

@@ -6,13 +6,10 @@ from collections.abc import Callable
 
 NUMBER = re.compile(r"((?<![\w.])-?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?)")
 """A number, and no digit of a name."""
-
 FORMULA = re.compile(NUMBER.pattern + r"?([*/]?)\bDT\b(?:\*\*(\d+))?")
 """A power of DT, with a coefficient or without."""
-
 STEPS_S = (2.0**-10, 2.0**-9, 2.0**-8)
 """Steps [s] whose powers are exact."""
-
 NEAR = 1e-9
 """Relative difference within which a number follows a power of the step."""
 
@@ -20,16 +17,8 @@ NEAR = 1e-9
 def by_step(written: Callable[[float], str]) -> str:
     """Return a text with what follows the step as a power of DT, the step [s].
 
-    Parameters
-    ----------
-    written : callable
-        ``(dt_s) -> str``: the text at a step [s], the same for all but for its numbers and for
-        where its lines are broken.
-
-    Raises
-    ------
-    ValueError
-        If a number follows the step, and no power of it.
+    `written` gives the text at a step [s]: the same for all but for its numbers and for where its
+    lines are broken. It is a ValueError if a number follows the step, and no power of it.
     """
     parts = [NUMBER.split(written(dt_s)) for dt_s in STEPS_S]
     plain = {tuple("".join(word.split()) for word in part[::2]) for part in parts}
@@ -41,20 +30,7 @@ def by_step(written: Callable[[float], str]) -> str:
 
 
 def at_step(written: str, dt_s: float) -> str:
-    """Return a text with numbers in place of its formulas of DT.
-
-    Parameters
-    ----------
-    written : str
-        As `by_step` returns it: DT, 0.5*DT, 2/DT or DT**2.
-    dt_s : float
-        The step [s], above 0.
-
-    Returns
-    -------
-    str
-        The numbers in ten digits.
-    """
+    """Return a text of `by_step` with numbers, in ten digits, in place of its formulas."""
 
     def number(found: re.Match[str]) -> str:
         times, sign, power = found.groups()
