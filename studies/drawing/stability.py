@@ -51,15 +51,17 @@ WORDS = {
     "contact of 1e-5/p": "stiff contact, time 1e-5/p",
 }
 """Name of a case -> what stands beside its row, where the name needs words."""
-ACROSS, NAMES_PT = 22, 72.0
-"""Methods side by side at most, more stand in a panel below; and what their names take [points]."""
+ACROSS, MANY, NAMES_PT = 22, 14, 72.0
+"""Methods side by side at most, more stand in a panel below; how many have narrow columns; and what
+their names take [points]."""
 
 
 def draw_matrix(rows: pd.DataFrame, title: str) -> Figure:
     """Draw the cases as rows and the methods as columns, those of a preset side by side."""
     groups, cases = _groups(rows["source"].unique()), rows.drop_duplicates("case")
     most = max(sum(map(len, panel.values())) for panel in groups)
-    size = (max(4.2 + 0.3 * most, 7.5), (0.235 * len(cases) + 1.7) * len(groups) + 1.5)
+    width = 4.2 + (0.3 if most > MANY else 0.5) * most
+    size = (max(width, 7.5), (0.235 * len(cases) + 1.7) * len(groups) + 1.5)
     drawing = Figure(figsize=size, layout="constrained")
     for axes, panel in zip(drawing.subplots(len(groups), squeeze=False).flat, groups, strict=True):
         _panel(axes, rows, cases, panel)
@@ -71,7 +73,7 @@ def draw_matrix(rows: pd.DataFrame, title: str) -> Figure:
         if verdict.value in set(rows["verdict"])
     ]
     handles.append(Patch(fc="white", ec="#888888", label="    does not apply"))
-    key(drawing, handles, 3 if most > 8 else 2, fontsize=8)
+    key(drawing, handles, 3 if width > 9.0 else 2, fontsize=8)
     return drawing
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields, make_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import pandas as pd
 from cyclopts import Parameter
@@ -28,6 +28,20 @@ Tables = Mapping[str, pd.DataFrame]
 
 def _nothing(tables: Tables) -> Mapping[str, Any]:
     return {}
+
+
+def _with_defaults(running: Running) -> type[Running]:
+    """Return Running with a study's defaults, which hold where another of its options is given."""
+    hints = get_type_hints(Running, include_extras=True)
+    own = [(each.name, getattr(running, each.name), each.default) for each in fields(Running)]
+    changed = [(name, hints[name], value) for name, value, default in own if value != default]
+    if not changed:
+        return Running
+    place = {"__module__": __name__}
+    made = make_dataclass(
+        "Running", changed, bases=(Running,), namespace=place, frozen=True, kw_only=True
+    )
+    return Parameter(name="*")(made)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,7 +114,7 @@ class Study:
             taken["sources"] = (Annotated[tuple[str, ...], sources_option()], self.sources)
         if self.quick:
             taken["quick"] = (Annotated[bool, Parameter(help=self.quick)], False)
-        taken["running"] = (Running, self.running)
+        taken["running"] = (_with_defaults(self.running), self.running)
 
         def command(**given: Any) -> int:
             given = {name: value for name, (_, value) in taken.items()} | given

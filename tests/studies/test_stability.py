@@ -14,6 +14,7 @@ from studies.__main__ import run as rocking
 from studies.cases.extreme import QUICK, Extreme, contact_settings, extremes
 from studies.drawing.stability import MARKS
 from studies.kit.run import lost_row, run
+from studies.kit.study import Study
 from studies.measures.energy import energy, growth
 from studies.measures.largest_step import (
     FACTOR,
@@ -217,6 +218,16 @@ def test_every_verdict_has_a_mark_of_its_own():
     assert set(MARKS) == set(Verdict)
     for looks in ({mark[0] for mark in MARKS.values()}, {mark[1] for mark in MARKS.values()}):
         assert len(looks) == len(Verdict)
+
+
+@pytest.mark.parametrize(("words", "limit"), [("--jobs 2", 600.0), ("--time-limit 5", 5.0)])
+def test_a_studys_own_time_limit_holds_beside_other_options(words, limit, tmp_path, monkeypatch):
+    seen = []
+    monkeypatch.setattr(
+        Study, "carry_out", lambda self, out, jobs, running, **_: seen.append(running)
+    )
+    rocking(["stability", "--out", str(tmp_path), "--sources", "exact", *words.split()])
+    assert [running.time_limit for running in seen] == [limit]
 
 
 @pytest.mark.parametrize(
