@@ -81,16 +81,15 @@ def draw_estimates(lines: pd.DataFrame) -> Figure:
     """Draw the part of each source's errors within a multiple of its estimates, by preset."""
     presets = lines["source"].map(preset_of)
     names = in_order(presets)
-    drawing = Figure(figsize=(3.2 * len(names) + 0.6, 4.2), layout="constrained")
-    panels = drawing.subplots(1, len(names), sharex=True, sharey=True, squeeze=False)[0]
+    drawing, grid = panels(len(names), len(names), (3.4, 3.6), 0.6, sharex=True, sharey=True)
     bounded: list[float] = []
-    for axes, preset in zip(panels, names, strict=True):
+    for axes, preset in zip(grid, names, strict=True):
         bounded += _parts(axes, lines[presets == preset])
         axes.set(xscale="log", xlim=(LEAST, MOST), ylim=(-0.02, 1.02))
         axes.set_title(in_words(preset), fontsize=9)
         axes.set_xlabel("times the difference to half the step")
         axes.grid(alpha=0.25)
-    panels[0].set_ylabel("part of the errors that are smaller")
+    grid[0].set_ylabel("part of the errors that are smaller")
     if bounded:
         ends = dict.fromkeys(part(end(bounded)) for end in (min, max))
         drawing.suptitle(

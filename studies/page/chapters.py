@@ -67,6 +67,8 @@ def statements(tables: Mapping[str, pd.DataFrame]) -> list[tuple[bool, str]]:
     ]
 
 
+HALVES = ("--halves", "--sources", "core", "core:fixed", "core:naive")
+
 CHAPTERS: dict[str, tuple[Part, ...]] = {
     "The paper's cases": (
         Part(
@@ -97,15 +99,15 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
             folder="estimate",
             name="validate",
             title="How far off is a peak where there is no exact solution?",
-            full=("--halves",),
-            quick=("--halves", "--quick"),
+            full=HALVES,
+            quick=(*HALVES, "--quick"),
         ),
         Part(
             folder="steps",
             name="validate",
             title="Do the steps that keep an error keep it in random cases?",
-            full=("--steps",),
-            quick=("--steps", "--quick"),
+            full=("--published-steps",),
+            quick=("--published-steps", "--quick"),
         ),
     ),
     "Error against run time": (
