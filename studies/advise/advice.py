@@ -117,29 +117,29 @@ def command(
     block, names = block_of(width, height), seen.TABLES if symptoms else TABLES
     folder = known.published_in(published, names)
     asked = engines or tuple(known.along_steps(folder, list(ENGINES))["engine"].unique())
-    options: dict[str, Any] = {"engines": asked, "width": width, "height": height}
-    if friction is None and not symptoms:
-        friction = FRICTION
+    at = friction if friction is not None else FRICTION
     with as_bad_input():
         if symptoms:
-            study, lines = seen.STUDY, seen.find(folder, asked, block, dt, friction)
-            options |= {"dt": dt, "friction": friction}
+            tables = {"symptoms": seen.find(folder, asked, block, dt, friction)}
+            details = list(seen.write(tables["symptoms"]))
         elif dt is None:
-            study, lines = STUDY, find(folder, asked, error, block)
-            options["error"] = error
+            tables = {"advice": find(folder, asked, error, block)}
+            details = list(write(tables["advice"], block, at))
         else:
-            study, lines = BY_STEP, find_errors(folder, asked, block, dt)
-        written = seen.write(lines) if symptoms else write(lines, block, friction or 0.0)
-        details = list(written) if lines["engine"].nunique() == 1 else [ONE_ENGINE]
-    tables = {study.name: lines}
+            tables = {"step": find_errors(folder, asked, block, dt)}
+            details = list(write(tables["step"], block, at))
     if out is None:
-        print(as_text(study.finding(tables), study.shown(tables)))
+        print(as_text(finding(tables), shown(tables)))
     else:
-        replace(study, tabulate=lambda _: tables).carry_out(out, [], Running(), **options)
-    times = f"{STEPPED} {OUTDATED}" if study is STUDY else ""
-    notes = [note for note in (too_slippery(friction), made(folder, names, asked), times) if note]
+        how = {"dt": dt, "friction": friction} if symptoms else {"error": error}
+        size = {"width": width, "height": height}
+        study = replace(STUDY, name="symptoms" if symptoms else "advise", tabulate=lambda _: tables)
+        study.carry_out(out, [], Running(), engines=asked, **size, **how)
+    notes = [too_slippery(friction if symptoms else at), made(folder, names, asked)]
+    notes += [f"{STEPPED} {OUTDATED}"] if "advice" in tables else []
     print()
-    print(*details, *(fill(note, WIDTH) for note in notes), sep="\n\n")
+    print(*(details if len(asked) == 1 else [ONE_ENGINE]), sep="\n\n", end="\n\n")
+    print(*(fill(note, WIDTH) for note in notes if note), sep="\n\n")
     return 0
 
 
@@ -232,7 +232,12 @@ def made(published: Path, names: Sequence[str], engines: Sequence[str]) -> str:
 
 
 def finding(tables: Tables) -> str:
-    """Say which engine keeps the smallest error that any keeps at the least cost."""
+    """Say which engine keeps the smallest error at the least cost, or what a step or setting is."""
+    if "symptoms" in tables:
+        return seen.finding(tables["symptoms"])
+    if "step" in tables:
+        line = tables["step"].iloc[0]
+        return f"A step of {line['dt_s']:g} s is p dt = {line['value']:.3g} for your block."
     lines = tables["advice"]
     kept = lines[lines["message"] == ""]
     if kept.empty:
@@ -246,17 +251,28 @@ def finding(tables: Tables) -> str:
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     """Return what each error costs at the least, what keeps it, and which one no setting keeps."""
+    if "symptoms" in tables:
+        return seen.shown(tables["symptoms"])
+    if "step" in tables:
+        title = (
+            "Largest error of the peak in published cases at the next coarser published p dt and "
+            "every finer one,\nfor presets with equal steps (inf: an outcome is wrong)"
+        )
+        return {title: tables["step"].drop(columns=["dt_s", "value"])}
     lines = tables["advice"]
     found = lines["message"] == ""
     helped = pd.Series([bool(preset_of(line).helped_by) for _, line in lines.iterrows()])
     costs = [
-        lines[chosen].nsmallest(1, "wall_s").assign(settings=words)
+        of.nsmallest(1, "wall_s").assign(settings=words)
         for words, among in (("any", found), ("the library's own", found & ~helped))
-        for chosen in [among & (lines["target"] == target) for target in lines["target"].unique()]
+        for _, of in lines[among].groupby("target", sort=False)
     ]
-    cost = pd.concat(costs)[["settings", *USE, "value", "wall_s", "runs"]]
     return {
-        "The least cost of each error, with any setting and with a library's own alone": cost,
+        "The least cost of each error, with any setting and with a library's own alone": (
+            pd.concat([lines[:0], *costs]).reindex(
+                columns=["settings", *USE, "value", "wall_s", "runs"]
+            )
+        ),
         "The cheapest setting that keeps each error with every finer one (value: p dt, or an "
         "engine's own accuracy;\ndt_s for your block), and how many random and extreme cases are "
         "off at this very setting": lines[found].drop(columns=["random_calm_off", "message"]),
@@ -267,25 +283,30 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
 
 
 def figures(tables: Tables) -> Mapping[str, Figure]:
-    """Draw the time of a case with each preset that keeps an error."""
-    from studies.drawing.advise import draw_advice
+    """Draw the time of a case with each preset that keeps an error, or the size of symptoms."""
+    from studies.drawing.advise import draw_advice, draw_symptoms
 
-    return {"advice": draw_advice(tables["advice"], finding(tables))}
+    drawings = {"advice": draw_advice, "symptoms": draw_symptoms}
+    return {name: drawings[name](table, finding(tables)) for name, table in tables.items()}
 
 
 STUDY = Study(
-    name="advice",
+    name="advise",
     question="Which setting of which engine for which accuracy?",
-    help=str(command.__doc__),
+    help="It runs nothing: it reads the published tables.",
     jobs=lambda *_: (),
     tabulate=lambda _: {},
     finding=finding,
     shown=shown,
     figures=figures,
+    texts=seen.TEXTS,
     captions={
         "advice": "Time of a case with each preset that keeps an error with every finer step, a "
         "panel for each error, a row for each engine; at the points their steps, p dt, or the "
-        "accuracy of an engine's own."
+        "accuracy of an engine's own.",
+        "symptoms": "What users of an engine see, a panel for each symptom, a row for each engine, "
+        "its size on a logarithmic scale: as documented, with the one setting that helps most, "
+        "with all of a contact tuned at equal steps, and with steps that land on impacts.",
     },
 )
 
@@ -311,25 +332,6 @@ def find_errors(
             sets = worst.reindex(["typical", "near overturning"])
             lines.append({**line, "coarser": at, **sets})
     return pd.DataFrame(lines)
-
-
-def step_of(tables: Tables) -> str:
-    """Say what p dt a step is."""
-    line = tables["step"].iloc[0]
-    return f"A step of {line['dt_s']:g} s is p dt = {line['value']:.3g} for your block."
-
-
-BY_STEP = replace(
-    STUDY,
-    name="step",
-    finding=step_of,
-    shown=lambda tables: {
-        "Largest error of the peak in published cases at the next coarser published p dt and every "
-        "finer one,\nfor presets with equal steps (inf: an outcome is wrong)": (
-            tables["step"].drop(columns=["dt_s", "value"])
-        )
-    },
-)
 
 
 def write(lines: pd.DataFrame, block: RigidBlock, friction: float) -> Iterator[str]:

@@ -8,7 +8,7 @@ from difflib import SequenceMatcher
 from functools import partial
 from pathlib import Path
 from textwrap import fill, indent
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import pandas as pd
 
@@ -21,13 +21,9 @@ from studies.cases.refusal import BadInputError
 from studies.cases.variants import variants
 from studies.kit.jobs import Row
 from studies.kit.say import WIDTH
-from studies.kit.study import Study, Tables
 from studies.kit.tables import read_table
 from studies.measures.formulas import at_step, by_step
 from studies.measures.published import LADDER, column_of
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 VARIANTS, OWN, BOUNCES = "contact/variants.csv", "contact/own-steps.csv", "restitution/corners.csv"
 TABLES = (VARIANTS, OWN, LADDER, BOUNCES)
@@ -80,6 +76,7 @@ COLUMNS = (
     *("literal", *NUMBERS[1:], "asked_in", "command"),
 )
 """Columns of symptoms.csv."""
+TEXTS = ("shown_by", "setting", "formula", "literal", "asked_in", "command")
 
 
 def find(
@@ -282,9 +279,8 @@ def _unique_from(lines: Sequence[str], i: int, j: int) -> int:
     return 0
 
 
-def finding(tables: Tables) -> str:
+def finding(lines: pd.DataFrame) -> str:
     """Say how many symptoms one setting mends, and how well."""
-    lines = tables["symptoms"]
     mended = lines[lines["after"].notna()]
     if mended.empty:
         return "No single setting halves a symptom."
@@ -295,29 +291,16 @@ def finding(tables: Tables) -> str:
     )
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(lines: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
     """Return a table for each symptom."""
-    lines = tables["symptoms"]
-    return {
-        _title(str(symptom), group): group[["engine", "shown_by", "setting", *NUMBERS]].dropna(
-            axis=1, how="all"
-        )
-        for symptom, group in lines.groupby("symptom", sort=False)
-    }
-
-
-def _title(symptom: str, group: pd.DataFrame) -> str:
-    line = group.iloc[0]
-    measure = column_of("", line["measure"])[-1].partition(";")[0].replace("|", "∣")
-    fails = "; inf: cases fail" if (group["before"] == math.inf).any() else ""
-    return fill(f"{symptom} ({measure}{fails}; asked in {line['asked_in']})", WIDTH)
-
-
-def figures(tables: Tables) -> Mapping[str, Figure]:
-    """Draw the size of each symptom by default, and with what mends it."""
-    from studies.drawing.advise import draw_symptoms
-
-    return {"symptoms": draw_symptoms(tables["symptoms"], finding(tables))}
+    tables = {}
+    for symptom, group in lines.groupby("symptom", sort=False):
+        line = group.iloc[0]
+        measure = column_of("", line["measure"])[-1].partition(";")[0].replace("|", "∣")
+        fails = "; inf: cases fail" if (group["before"] == math.inf).any() else ""
+        title = fill(f"{symptom} ({measure}{fails}; asked in {line['asked_in']})", WIDTH)
+        tables[title] = group[["engine", "shown_by", "setting", *NUMBERS]].dropna(axis=1, how="all")
+    return tables
 
 
 CHANGES = """A setting helps if it halves what there is, at the p dt of all and at the library's own
@@ -337,21 +320,3 @@ def write(lines: pd.DataFrame) -> Iterator[str]:
         if row["literal"] != row["formula"]:
             parts += [f"at DT = {row['dt_s']:.6g} s:", indent(row["literal"], "  ")]
         yield "\n".join(parts)
-
-
-STUDY = Study(
-    name="symptoms",
-    question="Which setting mends what users of an engine see?",
-    help="`rocking advise --symptoms`; it reads the published tables.",
-    jobs=lambda *_: (),
-    tabulate=lambda _: {},
-    finding=finding,
-    shown=shown,
-    figures=figures,
-    texts=("shown_by", "setting", "formula", "literal", "asked_in", "command"),
-    captions={
-        "symptoms": "What users of an engine see, a panel for each symptom, a row for each engine, "
-        "its size on a logarithmic scale: as documented, with the one setting that helps most, "
-        "with all of a contact tuned at equal steps, and with steps that land on impacts."
-    },
-)

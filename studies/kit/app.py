@@ -29,7 +29,7 @@ RETIRED = {
     "defaults": "overturning --sources engines:naive",
     "estimate": "validate --halves",
     "steps": "validate",
-    "symptoms": "advise",
+    "symptoms": "advise --symptoms",
     "validity": "overturning",
     "versions": "score --against",
 }
