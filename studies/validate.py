@@ -281,6 +281,8 @@ def finding(tables: Tables) -> str:
         )
     if "factors" in tables:
         high = tables["factors"]["factor_95_high"]
+        if np.isinf(high).all():
+            return f"So few random cases give no factor that bounds {part(BOUNDED)} of the errors."
         good = high[high <= MOST_TRUSTED]
         most = MOST_TRUSTED if good.empty else good.max()
         return (

@@ -101,6 +101,7 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
             title="How far off is a peak where there is no exact solution?",
             full=HALVES,
             quick=(*HALVES, "--quick"),
+            weaker="So few random cases that no factor has an upper end.",
         ),
         Part(
             folder="steps",

@@ -188,6 +188,7 @@ def test_above_thirty_estimates_there_is_no_bound():
     known = pd.DataFrame({"source": ["mujoco", "dart"], "factor_95_high": [1.6, 48.0]})
     assert "1.6" in (words := finding({"factors": known})) and "1 of 2" in words
     assert "none of 1" in finding({"factors": known[1:]})
+    assert "no factor" in finding({"factors": known.assign(factor_95_high=math.inf)})
     published = pd.read_csv(FACTORS).set_index("source")["factor_95_high"]
     assert published_trust("mujoco:landing").factor == published["mujoco"]
     assert published_trust("moreau") is None
