@@ -172,6 +172,7 @@ def _compile_for(jobs: Sequence[Job]) -> None:
 
 
 def _call(call: Callable[..., Any], *given: Any) -> None:
+    compile_all()  # a short job would be interpreted, and the first long one compile in its time
     call(*given)
 
 
