@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -84,12 +85,10 @@ def measure(job: Job) -> Row:
         limits = {"time_limit_s": left, "max_steps": steps} if resolve(source).engine else {}
         return ask(replace(job, source=source, options={**options, **limits}))
 
-    def step(options: Mapping[str, Any]) -> Response:
-        return tried(job.source, options, SEARCH_STEPS)
-
     if searched and lost is not None:
         return unanswered(lost.message)
     if searched:
+        step = partial(tried, job.source, steps=SEARCH_STEPS)
         return largest_steps(case, job.source, label["contact_s"], label["factor"], step)
     response = tried(job.source, job.options, ANSWER_STEPS, ANSWER_S)
     found = judge(case, job.source, response)
@@ -203,14 +202,10 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     return {
         "Valid cases that engines predict, by preset": by_preset(matrix),
         "Verdicts on the extreme cases": verdicts(matrix),
-        "Failures, those without a bound, and those that another setting mends": (
-            kinds.reset_index()
-        ),
-        "Failures, and the first setting that avoids each": (
-            wrong[["case", "source", "reason", "remedy"]]
-        ),
+        "Failures, those without a bound, and those mended by another setting": kinds.reset_index(),
+        "Failures, and what mends each": wrong[["case", "source", "reason", "remedy"]],
         "Cases for which the reference does not hold": doubtful.drop_duplicates("case"),
-        "Largest stable and accurate step, p dt, and over the contact's own time": (
+        "Largest steps, p dt, and over the contact's time": (
             steps[["case", "source", "contact_s", *LARGEST]]
         ),
     }

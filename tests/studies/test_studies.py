@@ -22,7 +22,7 @@ from studies.sources.registry import SOURCES, UnknownSourceError, resolve
 
 STUDIES = {
     "histories": ("--figure", "4", "--sources", "exact", "modified"),
-    "linearizations": ("--quick",),
+    "linearizations": (),
     "contact": ("--quick", "--engines", "pymunk"),
     "overturning": ("--quick", "--sources", "exact", "housner"),
     "precision": ("--quick", "--sources", "exact", "rk4"),
