@@ -30,7 +30,6 @@ from studies.kit.tables import draft
 from studies.sources.registry import scene_of
 
 TITLES = {RigidBlock: "rocking block", RockingFrame: "rocking frame", SlidingBlock: "sliding block"}
-PULSE, ONE_BLOCK, NOT_YOURS = Excitation(), Standing(), Yours()
 
 
 def command(
@@ -40,10 +39,10 @@ def command(
     width: Width,
     height: Height,
     preset: str | None = None,
-    excitation: Excitation = PULSE,
-    standing: Standing = ONE_BLOCK,
+    excitation: Excitation = Excitation(),  # noqa: B008
+    standing: Standing = Standing(),  # noqa: B008
     step: Step | None = None,
-    yours: Yours = NOT_YOURS,
+    yours: Yours = Yours(),  # noqa: B008
     time_limit: TimeLimit = 60.0,
 ) -> int:
     """Write a scene as a script that needs an engine's library alone, with what to expect of it.
