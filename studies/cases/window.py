@@ -44,47 +44,26 @@ def _check(name: str, value: float, limits: tuple[float, float]) -> None:
 class Window:
     """A plane of pulses: columns of one block and frequency, amplitudes in units of g tan(alpha).
 
-    Attributes
-    ----------
-    over : {"frequency", "slenderness", "size"}
-        The abscissa: omega/p; alpha [rad]; p/2 pi [Hz] under a pulse of `pulse_hz`.
-    low, high : float
-        Its range; that of AXES where not given.
-    onsets : float
-        Largest amplitude over g tan(alpha).
-    columns, rows : int
-        Number of columns, and of amplitudes in each, at the centres of the cells.
-    pulse : {"half-sine", "full-sine"}
-    aspect : float
-        H/B, where alpha is not the abscissa.
-    omega_over_p : float
-        Where alpha is the abscissa.
-    pulse_hz : float
-        Where the size is the abscissa.
-
-    Raises
-    ------
-    ValueError
-        If a value is beyond LIMITS, or the range of the abscissa is no range.
+    The abscissa goes from `low` to `high`, those of AXES where not given. `aspect` (H/B) holds
+    unless alpha is the abscissa, `omega_over_p` only then, and `pulse_hz` where the size is. A
+    ValueError names a value that is beyond LIMITS.
     """
 
     over: Axis = "frequency"
+    pulse: str = "full-sine"
+    aspect: float = 4.0
+    omega_over_p: float = 3.0
+    pulse_hz: float = 1.0
     low: float = math.nan
     high: float = math.nan
     onsets: float = 10.0
     columns: int = 1000
     rows: int = 1000
-    pulse: str = "full-sine"
-    aspect: float = 4.0
-    omega_over_p: float = 3.0
-    pulse_hz: float = 1.0
 
     def __post_init__(self) -> None:
-        least, most, _ = AXES[self.over]
-        for name, default in (("low", least), ("high", most)):
+        for name, default in zip(("low", "high"), AXES[self.over], strict=False):
             if math.isnan(getattr(self, name)):
                 object.__setattr__(self, name, default)
-        for name in ("low", "high"):
             _check(name, getattr(self, name), LIMITS[self.over])
         if self.high < LEAST_SPAN * self.low:
             allowed = f"low must be the smaller, at most {self.high / LEAST_SPAN:g}"
@@ -102,11 +81,6 @@ class Window:
         return PULSES[self.pulse]
 
     @property
-    def label(self) -> str:
-        """What the abscissa is called."""
-        return AXES[self.over][2]
-
-    @property
     def title(self) -> str:
         """What all points have in common."""
         if self.over == "slenderness":
@@ -122,29 +96,29 @@ class Window:
         """Return `count` amplitudes over g tan(alpha)."""
         return LEAST_ONSETS + (np.arange(count) + 0.5) * (self.onsets - LEAST_ONSETS) / count
 
+    def points(self, most: int) -> tuple[FloatArray, FloatArray]:
+        """Return abscissae and amplitudes of a grid of at most so many columns and rows."""
+        return tuple(  # type: ignore[return-value]
+            each.ravel()
+            for each in np.meshgrid(
+                self.centres(min(self.columns, most)),
+                self.amplitudes(min(self.rows, most)),
+                indexing="ij",
+            )
+        )
+
     def alpha(self, x: FloatArray) -> FloatArray:
         """Return the slenderness [rad] at abscissae."""
-        if self.over == "slenderness":
-            return x
-        return np.full_like(x, math.atan(1.0 / self.aspect))
+        return x if self.over == "slenderness" else np.full_like(x, math.atan(1.0 / self.aspect))
 
     def ratio(self, x: FloatArray) -> FloatArray:
         """Return omega/p at abscissae."""
         if self.over == "frequency":
             return x
-        if self.over == "size":
-            return self.pulse_hz / x
-        return np.full_like(x, self.omega_over_p)
+        return self.pulse_hz / x if self.over == "size" else np.full_like(x, self.omega_over_p)
 
     def modes(self, x: FloatArray, onsets: FloatArray, model: str = "exact") -> Modes:
-        """Return what happens at points of the plane, broadcast.
-
-        Parameters
-        ----------
-        x, onsets : ndarray
-            Abscissae, as `over` says, and amplitudes over g tan(alpha); their shapes broadcast.
-        model : {"exact", "housner", "modified", "onset-matched"}
-        """
+        """Return what happens to a model's block at points of the plane, broadcast."""
         alpha = self.alpha(x)
         amplitude = onsets * np.tan(alpha)
         return overturning_modes(alpha, amplitude, self.ratio(x), self.half_cycles, model)
@@ -155,18 +129,11 @@ class Window:
         return condition_numbers(alpha, onsets * np.tan(alpha), self.ratio(x), self.half_cycles)
 
     def case(self, x: float, onsets: float) -> tuple[RigidBlock, SinePulse]:
-        """Return the block and the pulse of a point, for sources other than the models.
-
-        Parameters
-        ----------
-        x, onsets : float
-            As for `modes`.
-        """
+        """Return the block and the pulse of a point, for sources other than the models."""
         alpha = float(self.alpha(np.array(x)))
         width = WIDTH_M
         if self.over == "size":
-            radius = 0.75 * GRAVITY / (2.0 * math.pi * x) ** 2
-            width = 2.0 * radius * math.sin(alpha)
+            width = 2.0 * 0.75 * GRAVITY / (2.0 * math.pi * x) ** 2 * math.sin(alpha)
         block = RigidBlock(width=width, height=width / math.tan(alpha))
         return block, SinePulse(
             amplitude=onsets * math.tan(alpha) * block.gravity,

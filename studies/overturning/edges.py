@@ -18,7 +18,8 @@ does not show on the grid, or one of several between the same two points of the 
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -27,149 +28,103 @@ from numpy.typing import NDArray
 from analytic.maps import Modes
 from analytic.motion import FloatArray
 
-SAMPLES = 17
-"""Points at which a cell beside an edge is looked at, and looked at again."""
-FINE_ROUNDS = 6
-WIDTH = 1e-10
-"""Amplitude, over g tan(alpha), to which an edge is known."""
-ISLAND_WIDTH = 1e-8
-"""Amplitude to which an extremum of the margin is followed."""
-ROUNDS = 100
-"""Of searches between modes, each of which may show more of them."""
+SAMPLES, FINE_ROUNDS, ROUNDS = 17, 6, 100
+"""Points of a cell beside an edge, how often such are looked at, and rounds of searches at most."""
+WIDTH, ISLAND_WIDTH = 1e-10, 1e-8
+"""Amplitude over g tan(alpha) to which an edge is known, and an extremum of the margin followed."""
 
 IntArray = NDArray[np.intp]
-
-
-class Solve(Protocol):
-    """Modes at amplitudes over g tan(alpha), each in the column of that number; both (n,)."""
-
-    def __call__(self, column: IntArray, amplitude: FloatArray) -> Modes:
-        """Solve."""
+ModeArray = NDArray[np.int32]
+Solve = Callable[[IntArray, FloatArray], Modes]
+"""Columns and amplitudes over g tan(alpha) -> modes; all (n,)."""
 
 
 class Points(NamedTuple):
-    """Amplitudes over g tan(alpha) of columns, their modes as of `Modes`, how found; each (n,)."""
+    """Amplitudes over g tan(alpha) of columns, and their modes as of `Modes`; each (n,)."""
 
     column: IntArray
     amplitude: FloatArray
-    mode: NDArray[np.int32]
-    found: NDArray[np.str_]
+    mode: ModeArray
 
 
-def points_of(
-    column: IntArray, amplitude: FloatArray, mode: NDArray[np.int32], found: str
-) -> Points:
-    """Return points that were all found in one way."""
-    return Points(column, amplitude, mode, np.full(len(mode), found))
+class Edges(NamedTuple):
+    """Amplitudes that bracket edges of columns, and the modes there; each (n,)."""
 
-
-NONE = points_of(np.empty(0, np.intp), np.empty(0), np.empty(0, np.int32), "")
-
-
-def join(*parts: Points) -> Points:
-    """Return the points of all parts."""
-    return Points(*map(np.concatenate, zip(*parts, strict=True)))
-
-
-def ordered(*parts: Points) -> Points:
-    """Return the points of all parts, by column and amplitude."""
-    points = join(*parts)
-    order = np.lexsort((points.amplitude, points.column))
-    columns: list[Any] = [values[order] for values in points]
-    return Points(*columns)
+    column: IntArray
+    low: FloatArray
+    high: FloatArray
+    below: ModeArray
+    above: ModeArray
 
 
 def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFrame:
-    """Return the edges of a map: where the outcome changes along each of its columns.
+    """Return the edges of columns 0, 1, ... with an increasing grid of amplitudes, as of `Edges`.
 
-    How, and what can be missed, stands at the head of this module.
-
-    Parameters
-    ----------
-    solve : callable
-        A `Solve`.
-    columns : int
-        Their number; they are 0, 1, ...
-    amplitudes : ndarray (m,)
-        The grid of each column over g tan(alpha), increasing.
-
-    Returns
-    -------
-    DataFrame
-        With `column`, `low` and `high`, the amplitudes that bracket the edge, `below` and `above`,
-        the modes there, and `found`: "grid", or "mode" or "margin" for those of an island that
-        lies between two neighbours of the grid. Ordered by column and amplitude.
-
-    Raises
-    ------
-    RuntimeError
-        If islands are still found within islands after ROUNDS searches.
+    RuntimeError if islands are still found within islands after ROUNDS searches.
     """
     grid = np.broadcast_to(amplitudes, (columns, len(amplitudes)))
     number = np.broadcast_to(np.arange(columns)[:, None], grid.shape)
     found = solve(number.ravel(), grid.ravel())
-    mode, margin = found.mode.reshape(grid.shape), found.margin.reshape(grid.shape)
-    points = ordered(
-        points_of(number.ravel(), grid.ravel(), found.mode, "grid"),
-        extrema(solve, grid, mode, margin),
-    )
-    fine = 0
+    points = Points(number.ravel(), grid.ravel(), found.mode)
+    new, fine = extrema(solve, grid, found), 0
     for _ in range(ROUNDS):
+        points = ordered(points, *new)
         edges = bisect(solve, points)
         # both sides of edges may show modes that the grid does not
-        sides = ("column", "low", "below", "found"), ("column", "high", "above", "found")
-        ends = [Points(*(edges[name].to_numpy() for name in side)) for side in sides]
-        points = ordered(points, *ends)
+        points = ordered(
+            points,
+            Points(edges.column, edges.low, edges.below),
+            Points(edges.column, edges.high, edges.above),
+        )
         new = mode_changes(solve, points)
-        if len(new.mode) == 0 and fine < FINE_ROUNDS:
+        if not any(len(each.mode) for each in new) and fine < FINE_ROUNDS:
             new, fine = beside_edges(solve, points, edges), fine + 1
-        if len(new.mode) == 0:
-            return edges
-        points = ordered(points, new)
+        if not any(len(each.mode) for each in new):
+            return pd.DataFrame(edges._asdict())
     raise RuntimeError(f"islands within islands after {ROUNDS} rounds")
 
 
-def beside_edges(solve: Solve, points: Points, edges: pd.DataFrame) -> Points:
-    """Sample the cells beside edges, where islands crowd, and follow the extrema there.
+def ordered(*parts: Points) -> Points:
+    """Return the points of all parts, by column and amplitude."""
+    column, amplitude, mode = map(np.concatenate, zip(*parts, strict=True))
+    order = np.lexsort((amplitude, column))
+    return Points(column[order], amplitude[order], mode[order])
 
-    Return the points that have another outcome than the cell in which they lie.
-    """
-    known = np.sort(_keys(edges["column"].to_numpy(), edges["low"].to_numpy()))
-    ends = np.sort(_keys(edges["column"].to_numpy(), edges["high"].to_numpy()))
-    key = _keys(points.column, points.amplitude)
-    touches = np.isin(key[:-1], ends) | np.isin(key[1:], known)
+
+def between(points: Points, wanted: NDArray[np.bool_]) -> Edges:
+    """Return the cells between a point and the next one of its column that are wanted."""
+    at = np.flatnonzero(wanted & (points.column[1:] == points.column[:-1]))
+    ends = (points.amplitude[at], points.amplitude[at + 1], points.mode[at], points.mode[at + 1])
+    return Edges(points.column[at], *ends)
+
+
+def beside_edges(solve: Solve, points: Points, edges: Edges) -> list[Points]:
+    """Sample the cells beside edges, and return points of another outcome than their cell's."""
+    key = points.column + 1j * points.amplitude
+    touches = np.isin(key[:-1], edges.column + 1j * edges.high)
+    touches |= np.isin(key[1:], edges.column + 1j * edges.low)
     wide = np.diff(points.amplitude) > SAMPLES * ISLAND_WIDTH
     alike = (points.mode[:-1] >= 0) == (points.mode[1:] >= 0)
-    at = neighbours(points, touches & wide & alike)
-    owner, low, high = points.column[at], points.amplitude[at], points.amplitude[at + 1]
-    grid = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, SAMPLES)
-    number = np.broadcast_to(owner[:, None], grid.shape)
+    cell = between(points, touches & wide & alike)
+    grid = cell.low[:, None] + (cell.high - cell.low)[:, None] * np.linspace(0.0, 1.0, SAMPLES)
+    number = np.broadcast_to(cell.column[:, None], grid.shape)
     found = solve(number.ravel(), grid.ravel())
-    mode, margin = found.mode.reshape(grid.shape), found.margin.reshape(grid.shape)
-    other = (mode >= 0) != (points.mode[at] >= 0)[:, None]
-    seen = points_of(number[other], grid[other], mode[other], "margin")
-    beyond = extrema(lambda i, amplitude: solve(owner[i], amplitude), grid, mode, margin)
-    return join(seen, beyond._replace(column=owner[beyond.column]))
+    mode = found.mode.reshape(grid.shape)
+    other = (mode >= 0) != (cell.below >= 0)[:, None]
+    beyond = extrema(lambda i, amplitude: solve(cell.column[i], amplitude), grid, found)
+    return [
+        Points(number[other], grid[other], mode[other]),
+        *(each._replace(column=cell.column[each.column]) for each in beyond),
+    ]
 
 
-def _keys(column: IntArray, amplitude: FloatArray) -> NDArray[np.complex128]:
-    return column + 1j * amplitude
-
-
-def neighbours(points: Points, wanted: NDArray[np.bool_]) -> IntArray:
-    """Return where a point and the next one in its column are wanted."""
-    return np.flatnonzero(wanted & (points.column[1:] == points.column[:-1]))
-
-
-def bisect(solve: Solve, points: Points) -> pd.DataFrame:
+def bisect(solve: Solve, points: Points) -> Edges:
     """Bisect every change of the outcome between ordered points."""
     first, second = points.mode[:-1], points.mode[1:]
-    changes = (first >= 0) != (second >= 0)
     direct = (first >= 0) & (second >= 0) & (first != second) & _close(points)
-    at = neighbours(points, changes | direct)
-    column = points.column[at]
-    low, high = points.amplitude[at], points.amplitude[at + 1]
-    below, above = points.mode[at], points.mode[at + 1]
+    column, low, high, below, above = edges = between(
+        points, ((first >= 0) != (second >= 0)) | direct
+    )
     while len(wide := np.flatnonzero(high - low > WIDTH)):
         middle = 0.5 * (low[wide] + high[wide])
         mode = solve(column[wide], middle).mode
@@ -177,71 +132,57 @@ def bisect(solve: Solve, points: Points) -> pd.DataFrame:
         up, down = wide[~rises], wide[rises]
         low[up], below[up] = middle[~rises], mode[~rises]
         high[down], above[down] = middle[rises], mode[rises]
-    found = points.found
-    beside = np.where(found[at] == "grid", found[at + 1], found[at])
-    table = {"column": column, "low": low, "high": high, "below": below, "above": above}
-    return pd.DataFrame({**table, "found": beside})
+    return edges
 
 
 def _close(points: Points) -> NDArray[np.bool_]:
     return np.diff(points.amplitude) <= WIDTH
 
 
-def mode_changes(solve: Solve, points: Points) -> Points:
+def mode_changes(solve: Solve, points: Points) -> list[Points]:
     """Return points that survive between neighbours that overturn after other numbers of impacts.
 
     Where there is none to WIDTH, the two points on either side of the change.
     """
     first, second = points.mode[:-1], points.mode[1:]
-    at = neighbours(points, (first >= 0) & (second >= 0) & (first != second) & ~_close(points))
-    column = points.column[at]
-    low, high = points.amplitude[at], points.amplitude[at + 1]
-    below, above = points.mode[at], points.mode[at + 1]
-    search = np.arange(len(at))
-    found = [NONE]
+    column, low, high, below, above = between(
+        points, (first >= 0) & (second >= 0) & (first != second) & ~_close(points)
+    )
+    search, found = np.arange(len(column)), []
     while len(search):
         middle = 0.5 * (low[search] + high[search])
         mode = solve(column[search], middle).mode
-        survives = mode < 0
-        surviving = (column[search[survives]], middle[survives], mode[survives])
-        found.append(points_of(*surviving, "mode"))
-        like_below = mode == below[search]
-        up, down = search[~survives & like_below], search[~survives & ~like_below]
-        low[up] = middle[~survives & like_below]
-        high[down], above[down] = middle[~survives & ~like_below], mode[~survives & ~like_below]
+        survives, like_below = mode < 0, mode == below[search]
+        found.append(Points(column[search[survives]], middle[survives], mode[survives]))
+        up, down = ~survives & like_below, ~survives & ~like_below
+        low[search[up]] = middle[up]
+        high[search[down]], above[search[down]] = middle[down], mode[down]
         search = search[~survives]
         done = high[search] - low[search] <= WIDTH
-        ended = search[done]
-        found += [
-            points_of(column[ended], low[ended], below[ended], "mode"),
-            points_of(column[ended], high[ended], above[ended], "mode"),
-        ]
-        search = search[~done]
-    return join(*found)
+        ended, search = search[done], search[~done]
+        found.append(Points(column[ended], low[ended], below[ended]))
+        found.append(Points(column[ended], high[ended], above[ended]))
+    return found
 
 
-def extrema(solve: Solve, grid: FloatArray, mode: NDArray[np.int32], margin: FloatArray) -> Points:
+def extrema(solve: Solve, grid: FloatArray, known: Modes) -> list[Points]:
     """Follow every local extremum of the margin towards zero; return the points beyond zero."""
-    over = mode >= 0
+    over, margin = (known.mode >= 0).reshape(grid.shape), known.margin.reshape(grid.shape)
     alike = (over[:, 1:-1] == over[:, :-2]) & (over[:, 1:-1] == over[:, 2:])
     # a surviving maximum, or an overturning minimum, is a least distance from the edge
     distance = np.where(np.isfinite(margin), np.abs(margin), np.inf)
     here = distance[:, 1:-1]
     least = (here <= distance[:, :-2]) & (here < distance[:, 2:])
     column, row = np.nonzero(alike & least & np.isfinite(here))
-    row += 1
-    low, middle, high = grid[column, row - 1], grid[column, row], grid[column, row + 1]
-    best, side = distance[column, row], over[column, row]
-    search = np.arange(len(column))
-    beyond = [NONE]
+    low, middle, high = (grid[column, row + k] for k in range(3))
+    best, side = distance[column, row + 1], over[column, row + 1]
+    search, beyond = np.arange(len(column)), []
     while len(search):
         right = high[search] - middle[search] > middle[search] - low[search]
-        end = np.where(right, high[search], low[search])
-        trial = 0.5 * (middle[search] + end)
+        trial = 0.5 * (middle[search] + np.where(right, high[search], low[search]))
         found = solve(column[search], trial)
         crossed = (found.mode >= 0) != side[search]
-        crossing = (column[search[crossed]], trial[crossed], found.mode[crossed])
-        beyond.append(points_of(*crossing, "margin"))
+        beyond.append(Points(column[search[crossed]], trial[crossed], found.mode[crossed]))
         size = np.where(np.isfinite(found.margin), np.abs(found.margin), np.inf)
         better = size < best[search]
         # the new point is the middle, and the old one bounds the interval; or it bounds it itself
@@ -252,36 +193,4 @@ def extrema(solve: Solve, grid: FloatArray, mode: NDArray[np.int32], margin: Flo
         middle[search[better]], best[search[better]] = trial[better], size[better]
         search = search[~crossed]
         search = search[high[search] - low[search] > ISLAND_WIDTH]
-    return join(*beyond)
-
-
-def intervals(
-    edges: pd.DataFrame, first: NDArray[np.int32], low: float, high: float
-) -> pd.DataFrame:
-    """Return the intervals of the amplitude between the edges of each column.
-
-    Parameters
-    ----------
-    edges : DataFrame
-        From `find_edges`.
-    first : ndarray of int32 (columns,)
-        The mode of each column at its lower end.
-    low, high : float
-        Ends of every column over g tan(alpha).
-
-    Returns
-    -------
-    DataFrame
-        column, low, high and mode, ordered by column and amplitude; of a column without an edge one
-        from end to end. They meet in the middle of an edge's bracket.
-    """
-    columns = len(first)
-    middle = 0.5 * (edges["low"].to_numpy() + edges["high"].to_numpy())
-    column = np.concatenate([np.arange(columns), edges["column"].to_numpy()])
-    start = np.concatenate([np.full(columns, low), middle])
-    mode = np.concatenate([first, edges["above"].to_numpy()])
-    order = np.lexsort((start, column))
-    column, start, mode = column[order], start[order], mode[order]
-    end = np.append(start[1:], high)
-    end[np.append(column[1:] != column[:-1], True)] = high
-    return pd.DataFrame({"column": column, "low": start, "high": end, "mode": mode})
+    return beyond

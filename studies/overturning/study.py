@@ -1,93 +1,80 @@
-"""Overturning maps: which pulses overturn a block, by which mode, and who gets that wrong."""
+"""Overturning maps: which pulses overturn a block, by which mode, and who predicts that wrongly."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import asdict
-from functools import cache
-from typing import Annotated, Literal
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from itertools import product
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pandas as pd
+from cyclopts import Parameter
 
-from analytic.models import MODELS
+from analytic import MODELS, simulate
 from analytic.motion import FloatArray
+from analytic.response import Outcome, Response
+from studies.cases.refusal import BadInputError
 from studies.cases.window import LEAST_ONSETS, Axis, Window
-from studies.old.arguments import (
-    BadInputError,
-    Count,
-    Out,
-    Positive,
-    Yes,
-    as_bad_input,
-    refuse_given,
+from studies.kit.arguments import Count, Positive, Yes, as_bad_input, refuse_given
+from studies.kit.jobs import Job, Question, Row, answer, ask
+from studies.kit.options import Running, refuse_days, refuse_excess
+from studies.kit.say import capital, out_of, part
+from studies.kit.store import usable_cores
+from studies.kit.study import Study, Tables
+from studies.measures.presets import in_order, in_words, preset_of
+from studies.measures.wrongness import NO_ANSWER, REST
+from studies.overturning.edges import find_edges
+from studies.overturning.planes import (
+    FALSE,
+    MISSED,
+    plane_finding,
+    plane_jobs,
+    plane_tables,
+    verdicts,
 )
-from studies.old.jobs import Job
-from studies.old.journal import Row
-from studies.old.naming import sources_option
-from studies.old.options import PATIENT_RUNNING, PatientRunning, refuse_days, refuse_excess
-from studies.old.plan import Plan, Tables, by_label, carry_out
-from studies.old.provenance import usable_cores
-from studies.overturning import STUDY
-from studies.overturning.edges import find_edges, intervals
-from studies.overturning.engine_edges import (
-    ask_for_table,
-    chosen_edges,
-    edge_jobs,
-    grid_jobs,
-    reduce,
-)
-from studies.overturning.report import finding, report
 from studies.sources.registry import core_sources, resolve
 
-__all__ = ["command", "finding", "report"]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-MAPPED = sources_option("exact must be among them: ")
-DEFAULT_SOURCES = (
-    *("exact", "housner", "modified", "onset-matched"),
-    *core_sources("naive"),
-    *core_sources(),
-)
-STRIP = 250_000
-"""Cases that are held at a time."""
-CELL_BYTES, COLUMN_BYTES = 200.0, 3000.0
-"""About what a cell of a strip holds, and a column's edges."""
+STRIP, STRIP_BYTES, COLUMN_BYTES = 250_000, 200.0, 3000.0
+"""Cases that are held at a time; about what each holds, and the edges of a column [byte]."""
 CELL_S, COLUMN_S = 2e-5, 0.02
 """About how long a cell takes on one core, and a column's edges [s]."""
-APPLIES = {
-    "aspect": ("frequency", "size"),
-    "omega-over-p": ("slenderness",),
-    "pulse-hz": ("size",),
-}
+APPLIES = {"aspect": ("frequency", "size"), "omega_over_p": ("slenderness",), "pulse_hz": ("size",)}
 """Over which abscissae an option says something."""
-RESOLUTION, QUICK_RESOLUTION = 1000, 200
-KAPPA_RESOLUTION = 160
-ENGINE_RESOLUTION, QUICK_ENGINE_RESOLUTION = 32, 8
+KAPPA_CELLS, FORCE_CELLS, ENGINE_CELLS, QUICK_CELLS = 160, 48, 32, 8
+"""Columns of a grid, and amplitudes in each, for κ, for the contact force and for engines."""
 POSITIONS, QUICK_POSITIONS = (0.12, 0.3, 0.5, 0.7, 0.9), (0.5,)
 """Parts of the abscissa at which engines are asked about edges."""
+OFFSETS = (-1e-2, -1e-3, -1e-4, 1e-4, 1e-3, 1e-2)
+"""Relative distances from an edge at which an engine is asked for the outcome."""
+ROOM, SPREAD, SHARP = 0.04, 0.03, 1e-6
+"""Relative width on both sides that an edge needs to be asked about; that within which an engine's
+own threshold is looked for; and that to which it is bisected."""
+WINDOW = tuple(item.name for item in fields(Window))
+ANSWER = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
+COLUMNS = {
+    "engines": ("table", "x", "onsets", *ANSWER),
+    "edges": ("table", "edge", "overturns", "offset", "x", "onsets", *ANSWER),
+    "thresholds": (
+        *("table", "edge", "overturns", "x", "onsets"),
+        *("source", "outcome", "shift", "runs", "message"),
+    ),
+}
+"""Table of engines -> its columns."""
+MODES = ("survives", "no_impact", "after_1", "after_2", "after_3", "after_more")
+"""Columns of the parts of a map, from the mode -1 on."""
 
 
-def command(
-    *,
-    out: Out,
-    over: Axis = "frequency",
-    pulse: Literal["half-sine", "full-sine"] = "full-sine",
-    aspect: Positive | None = None,
-    omega_over_p: Positive | None = None,
-    pulse_hz: Positive | None = None,
-    low: Positive | None = None,
-    high: Positive | None = None,
-    onsets: Positive | None = None,
-    columns: Count | None = None,
-    rows: Count | None = None,
-    sources: Annotated[tuple[str, ...], MAPPED] = DEFAULT_SOURCES,
-    quick: bool = False,
-    running: PatientRunning = PATIENT_RUNNING,
-    yes: Yes = False,
-) -> int:
-    """Map which pulses overturn a block.
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Which plane of pulses is mapped.
 
-    Parameters
+    Attributes
     ----------
     over
         The abscissa: frequency (ω/p), slenderness (α) or size (p/2π in Hz).
@@ -109,107 +96,400 @@ def command(
         Number of abscissae; 1000 by default, 200 in a quick study.
     rows
         Number of amplitudes at each; 1000 by default, 200 in a quick study.
-    sources
-        exact, and linear models or engines.
-    quick
-        A coarser map and fewer runs of the engines: less than a minute on 2 cores.
+    planes
+        Instead of one map twelve planes, pulse by pulse: half and full sines, H/B of 2, 3 and 4,
+        and two widths, which are alike by similarity; every other pulse after a second of rest.
     """
-    if "exact" not in sources:
-        raise BadInputError("--sources must name exact, which the others are held against")
+
+    over: Axis = "frequency"
+    pulse: Literal["half-sine", "full-sine"] = "full-sine"
+    aspect: Positive | None = None
+    omega_over_p: Positive | None = None
+    pulse_hz: Positive | None = None
+    low: Positive | None = None
+    high: Positive | None = None
+    onsets: Positive | None = None
+    columns: Count | None = None
+    rows: Count | None = None
+    planes: bool = False
+    yes: Yes = False
+
+    def window(self, quick: bool) -> Window:
+        """Return the plane that is asked for; BadInputError if an option is beyond its limits."""
+        for name, axes in APPLIES.items():
+            if self.over not in axes:
+                words = f"only with --over {' or '.join(axes)}"
+                refuse_given({name: getattr(self, name)}, words)
+        given = {name: getattr(self, name) for name in WINDOW}
+        cells = dict.fromkeys(("columns", "rows"), 200 if quick else 1000)
+        with as_bad_input():
+            return Window(**cells | {name: it for name, it in given.items() if it is not None})
+
+
+def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
+    """Return a job for each model, which maps the plane, and those of engines on it."""
+    sources = tuple(dict.fromkeys(("exact", *sources)))
     for name in sources:
         if resolve(name).kind not in ("model", "engine"):
-            raise BadInputError(f"--sources: {name!r} cannot be mapped; models and engines can")
-    beside = {"aspect": aspect, "omega-over-p": omega_over_p, "pulse-hz": pulse_hz}
-    for name, axes in APPLIES.items():
-        if over not in axes:
-            refuse_given({name: beside[name]}, f"only with --over {' or '.join(axes)}")
-    asked = {**beside, "low": low, "high": high, "onsets": onsets}
-    given = {name.replace("-", "_"): v for name, v in asked.items() if v is not None}
-    resolution = QUICK_RESOLUTION if quick else RESOLUTION
-    with as_bad_input():
-        window = Window(
-            over=over,
-            pulse=pulse,
-            columns=columns or resolution,
-            rows=rows or resolution,
-            **given,
-        )
-    refuse_too_much(window, sources, yes)
+            raise BadInputError(f"--sources names {name!r}; it must name models and engines")
+    if options.planes:
+        plain = Options(planes=True, yes=options.yes)
+        given = {name: it for name, it in asdict(options).items() if it != getattr(plain, name)}
+        refuse_given(given, "only without --planes")
+        return plane_jobs(sources, quick)
+    window = options.window(quick)
+    models = [name for name in sources if name in MODELS]
     engines = [name for name in sources if name not in MODELS]
+    refuse_too_much(window, len(models), options.yes)
 
-    @cache
-    def maps() -> dict[str, tuple[pd.DataFrame, pd.DataFrame]]:
-        return {model: mapped(window, model) for model in sources if model in MODELS}
+    def job(source: str, x: float, onsets: float, **labels: Any) -> Job:
+        system, motion = window.case(x, onsets)
+        case = Question(system=system, motion=motion)
+        return Job(labels=labels | {"x": x, "onsets": onsets}, case=case, source=source)
 
-    def jobs() -> list[Job]:
-        exact, _ = maps()["exact"]
-        parts = QUICK_POSITIONS if quick else POSITIONS
-        places = [window.low + part * (window.high - window.low) for part in parts]
-        count = QUICK_ENGINE_RESOLUTION if quick else ENGINE_RESOLUTION
-        chosen = chosen_edges(exact, places)
-        return [*grid_jobs(window, engines, count), *edge_jobs(window, engines, chosen)]
-
-    def tabulate(rows: Sequence[Row]) -> Tables:
-        boundaries, areas = (pd.concat(part) for part in zip(*maps().values(), strict=True))
-        mapped = {"boundaries": boundaries, "conditioning": conditioned(window), "map": areas}
-        return {**by_label("table")(rows), **mapped}
-
-    plan = Plan(
-        jobs=jobs,
-        settings={"window": asdict(window), "quick": quick},
-        growing={"source": engines},
-        ask=ask_for_table,
-        reduce=reduce,
-        tabulate=tabulate,
-    )
-    return carry_out(STUDY, plan, out, running, report)
+    middle = 0.5 * (window.low + window.high)
+    whole = job("exact", middle, window.onsets)
+    labels = {"table": "map", **asdict(window)}
+    found = [replace(whole, labels=labels, source=model) for model in models]
+    cells = QUICK_CELLS if quick else ENGINE_CELLS
+    grid = product(window.centres(cells).tolist(), window.amplitudes(cells).tolist(), engines)
+    found += [job(source, x, onsets, table="engines") for x, onsets, source in grid]
+    parts = QUICK_POSITIONS if quick else POSITIONS
+    places = [window.low + part * (window.high - window.low) for part in parts]
+    for edge, source in product(roomy_edges(window, places) if engines else (), engines):
+        x, onsets, above = edge
+        beside = {"edge": onsets, "overturns": "above" if above >= 0 else "below"}
+        for offset in OFFSETS:
+            where = {"table": "edges", **beside, "offset": offset}
+            found.append(job(source, x, onsets * (1.0 + offset), **where))
+        found.append(job(source, x, onsets, table="thresholds", **beside))
+    return found
 
 
-def refuse_too_much(window: Window, sources: Sequence[str], yes: bool) -> None:
-    """Raise BadInputError if a map needs more memory than there is, or days without a yes."""
-    models = sum(name in MODELS for name in sources)
+def refuse_too_much(window: Window, models: int, yes: bool) -> None:
+    """Refuse a map that needs more memory than there is, or days without a yes."""
     asked = f"--columns is {window.columns} and --rows is {window.rows}"
     columns = models * window.columns
-    refuse_excess(asked, max(window.rows, STRIP) * CELL_BYTES + columns * COLUMN_BYTES)
+    refuse_excess(asked, max(window.rows, STRIP) * STRIP_BYTES + columns * COLUMN_BYTES)
     refuse_days(asked, columns * (COLUMN_S + window.rows * CELL_S / usable_cores()), yes)
 
 
-def conditioned(window: Window) -> pd.DataFrame:
-    """Return the condition numbers of the exact peaks on a grid; nan where the block overturns."""
-    x, onsets = np.meshgrid(
-        window.centres(min(window.columns, KAPPA_RESOLUTION)),
-        window.amplitudes(min(window.rows, KAPPA_RESOLUTION)),
-        indexing="ij",
-    )
-    found = window.condition_numbers(x, onsets)
-    columns = {"x": x, "onsets": onsets, "kappa": found.amplitude, "kappa_eta": found.restitution}
-    return pd.DataFrame({name: column.ravel() for name, column in columns.items()})
-
-
-def mapped(window: Window, model: str) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Return the edges of a model and the intervals between them, a strip of columns at a time."""
-    x, inner = window.centres(window.columns), window.amplitudes(window.rows)
-    amplitudes = np.concatenate([[LEAST_ONSETS], inner, [window.onsets]])
+def edges_of(window: Window, model: str, x: FloatArray) -> pd.DataFrame:
+    """Return the edges of a model's columns at some abscissae, a strip of columns at a time."""
+    amplitudes = [[LEAST_ONSETS], window.amplitudes(window.rows), [window.onsets]]
     width = max(STRIP // window.rows, 1)
-    edges, spans = [], []
-    for start in range(0, window.columns, width):
+    found = []
+    for start in range(0, len(x), width):
         strip = x[start : start + width]
-        found, between = _strip(window, model, strip, amplitudes)
-        edges.append(found)
-        spans.append(between)
-    return pd.concat(edges), pd.concat(spans)
+        edges = find_edges(
+            lambda i, onsets, at=strip: window.modes(at[i], onsets, model),
+            len(strip),
+            np.concatenate(amplitudes),
+        )
+        found.append(edges.assign(column=strip[edges["column"]]).rename(columns={"column": "x"}))
+    return pd.concat(found, ignore_index=True)
 
 
-def _strip(
-    window: Window, model: str, x: FloatArray, amplitudes: FloatArray
-) -> tuple[pd.DataFrame, pd.DataFrame]:
-    found = find_edges(lambda i, onsets: window.modes(x[i], onsets, model), len(x), amplitudes)
-    first = window.modes(x, np.full(len(x), amplitudes[0]), model).mode
-    spans = intervals(found, first, LEAST_ONSETS, window.onsets)
-    return _named(found, model, x, window), _named(spans, model, x, window)
+def roomy_edges(window: Window, places: Sequence[float]) -> list[tuple[float, float, int]]:
+    """Return x, amplitude and mode above of exact edges that have ROOM, in columns near places."""
+    columns = window.centres(window.columns)
+    near = np.unique([columns[np.argmin(abs(columns - place))] for place in places])
+    edges = edges_of(window, "exact", near)
+    logs = np.log(edges["low"]).groupby(edges["x"])
+    room = ~(logs.diff() <= ROOM) & ~(logs.diff(-1) >= -ROOM)  # at an end there is no next one
+    return list(edges.loc[room, ["x", "low", "above"]].itertuples(index=False, name=None))
 
 
-def _named(table: pd.DataFrame, model: str, x: FloatArray, window: Window) -> pd.DataFrame:
-    at = x[table["column"].to_numpy()]
-    columns = {"model": model, "x": at, "alpha": window.alpha(at), "omega_over_p": window.ratio(at)}
-    return pd.concat([pd.DataFrame(columns), table.drop(columns="column")], axis=1)
+def measure(job: Job) -> Row:
+    """Return a model's edges, an engine's own threshold, or an engine's answer."""
+    table = job.labels.get("table")
+    if table == "map":
+        window = Window(**{name: job.labels[name] for name in WINDOW})
+        edges = edges_of(window, job.source, window.centres(window.columns))
+        return {"outcome": "mapped", "edges": edges.to_dict("list"), "message": ""}
+    return threshold(job) if table == "thresholds" else answer(job)
+
+
+def threshold(job: Job) -> Row:
+    """Bisect the amplitude, near that of the job, at which its source's outcome changes."""
+    pulse: Any = job.case.motion
+    answers: list[Response] = []
+
+    def overturns(shift: float) -> bool:
+        moved = replace(pulse, amplitude=pulse.amplitude * (1.0 + shift))
+        answers.append(ask(replace(job, case=replace(job.case, motion=moved))))
+        if answers[-1].outcome is Outcome.FAILED:
+            raise ArithmeticError
+        return answers[-1].outcome is Outcome.OVERTURNED
+
+    low, high, shift = -SPREAD, SPREAD, math.nan
+    try:
+        first = overturns(low)
+        if overturns(high) is not first:
+            while high - low > SHARP:
+                middle = 0.5 * (low + high)
+                low, high = (middle, high) if overturns(middle) is first else (low, middle)
+            shift = 0.5 * (low + high)
+    except ArithmeticError:
+        lost = {"outcome": Outcome.FAILED.value, "shift": math.nan, "runs": 0}
+        return {**lost, "message": answers[-1].message}
+    last = answers[1]
+    found = {"outcome": last.outcome.value, "shift": shift, "runs": len(answers)}
+    return {**found, "message": last.message}
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return the tables of a map, or of planes."""
+    if "table" not in rows:
+        return plane_tables(rows)
+    maps = rows[rows["table"] == "map"]
+    plane = maps[list(WINDOW)].head(1).astype({"columns": int, "rows": int})
+    window = window_of({"window": plane})
+    x = window.centres(window.columns)
+    edges, areas = [], []
+    for model, found in zip(maps["source"], maps["edges"], strict=True):
+        known = pd.DataFrame(found)
+        lowest = window.modes(x, np.full(len(x), LEAST_ONSETS), model).mode
+        for each, table in ((edges, known), (areas, intervals(known, x, lowest, window.onsets))):
+            at = table["x"].to_numpy()
+            named = {"model": model, "x": at, "alpha": window.alpha(at)}
+            head = pd.DataFrame({**named, "omega_over_p": window.ratio(at)})
+            each.append(pd.concat([head, table.drop(columns="x")], axis=1))
+    at, onsets = window.points(KAPPA_CELLS)
+    kappa = window.condition_numbers(at, onsets)
+    conditions = {"x": at, "onsets": onsets, "kappa": kappa.amplitude}
+    tables = {
+        "window": plane,
+        "boundaries": pd.concat(edges),
+        "map": pd.concat(areas),
+        "conditioning": pd.DataFrame({**conditions, "kappa_eta": kappa.restitution}),
+        "validity": forces(window),
+    }
+    for name, columns in COLUMNS.items():
+        if (mine := rows["table"] == name).any():
+            whole = {name: int for name in ("impacts", "steps", "runs") if name in columns}
+            tables[name] = rows.loc[mine, list(columns)].fillna({"runs": 0}).astype(whole)
+    compared = differences(tables["map"], tables.get("engines"), window)
+    return tables | ({"differences": compared} if len(compared) else {})
+
+
+def window_of(tables: Tables) -> Window:
+    """Return the plane that a map's tables are of."""
+    return Window(**tables["window"].to_dict("records")[0])
+
+
+def intervals(
+    edges: pd.DataFrame, x: FloatArray, lowest: FloatArray, onsets: float
+) -> pd.DataFrame:
+    """Return the intervals of one mode from LEAST_ONSETS on, which meet in the middle of edges."""
+    first = pd.DataFrame({"x": x, "low": LEAST_ONSETS, "mode": lowest})
+    middle = 0.5 * (edges["low"] + edges["high"])
+    later = pd.DataFrame({"x": edges["x"], "low": middle, "mode": edges["above"]})
+    spans = pd.concat([first, later]).sort_values(["x", "low"], ignore_index=True)
+    high = spans.groupby("x")["low"].shift(-1).fillna(onsets)
+    return spans.assign(high=high)[["x", "low", "high", "mode"]]
+
+
+def forces(window: Window) -> pd.DataFrame:
+    """Return the least normal force over the weight, and the friction, that exact motions need."""
+    x, onsets = window.points(FORCE_CELLS)
+    found = [simulate(*window.case(*at)) for at in zip(x.tolist(), onsets.tolist(), strict=True)]
+    needs = [(it.outcome.value, it.min_normal, it.friction_needed) for it in found]
+    names = ["outcome", "min_normal", "friction_needed"]
+    return pd.DataFrame({"x": x, "onsets": onsets}).join(pd.DataFrame(needs, columns=names))
+
+
+def with_verdicts(engines: pd.DataFrame, window: Window) -> pd.DataFrame:
+    """Add to engines' rows on a map the exact mode and the verdict on the outcome."""
+    mode = window.modes(engines["x"].to_numpy(), engines["onsets"].to_numpy()).mode
+    # no pulse of the map is too weak to lift the block
+    exact = np.where(mode >= 0, Outcome.OVERTURNED.value, Outcome.ROCKED.value)
+    return engines.assign(exact_mode=mode, verdict=verdicts(engines["outcome"], exact))
+
+
+def differences(areas: pd.DataFrame, engines: pd.DataFrame | None, window: Window) -> pd.DataFrame:
+    """Return the parts of the map in which each source is wrong.
+
+    For models parts of the area, exact in the amplitude; for engines of the cells, whose runs end
+    when the outcome is decided, so that their number of impacts is not compared.
+    """
+    exact = areas.loc[areas["model"] == "exact", ["x", "low", "mode"]]
+    others = areas[areas["model"] != "exact"].groupby("model", sort=False)
+    rows = [{"source": model, **_of_model(exact, area, window)} for model, area in others]
+    if engines is not None:
+        for source, verdict in with_verdicts(engines, window).groupby("source", sort=False)[
+            "verdict"
+        ]:
+            parts = {kind: float((verdict == kind).mean()) for kind in (FALSE, MISSED)}
+            counts = {kind: int((verdict == kind).sum()) for kind in (REST, NO_ANSWER)}
+            rows.append({"source": source, **parts, "cells": len(verdict), **counts})
+    ends = [f"{kind}_{end}" for kind in (FALSE, MISSED) for end in ("from", "to")]
+    columns = ["source", FALSE, MISSED, "other_mode", "cells", REST, NO_ANSWER, *ends]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def _of_model(exact: pd.DataFrame, area: pd.DataFrame, window: Window) -> dict[str, float]:
+    both = exact.merge(area[["x", "low", "mode"]], on=["x", "low"], how="outer")
+    column = both.groupby("x")
+    right, found = (column[f"mode_{side}"].ffill() for side in "xy")
+    length = column["low"].shift(-1).fillna(window.onsets) - both["low"]
+    where = {
+        FALSE: (right < 0) & (found >= 0),
+        MISSED: (right >= 0) & (found < 0),
+        "other_mode": (right >= 0) & (found >= 0) & (right != found),
+    }
+    whole = window.onsets - LEAST_ONSETS
+    lengths = pd.DataFrame({kind: length.where(at, 0.0) for kind, at in where.items()})
+    shares = lengths.groupby(both["x"]).sum()
+    parts = dict(zip(where, np.ascontiguousarray(shares).mean(axis=0) / whole, strict=True))
+    for kind, (end, share) in product((FALSE, MISSED), (("from", 0.05), ("to", 0.95))):
+        total = shares[kind].cumsum().to_numpy()
+        place = int(np.searchsorted(total, share * total[-1]))
+        parts[f"{kind}_{end}"] = float(shares.index[place]) if total[-1] > 0.0 else math.nan
+    return {**parts, REST: 0, NO_ANSWER: 0}
+
+
+def finding(tables: Tables) -> str:
+    """Say how much of the map the worst linearization gets wrong, and how many cells engines do."""
+    if "parts" in tables:
+        return plane_finding(tables["parts"])
+    lines = tables.get("differences")
+    if lines is None:
+        return "The exact map stands alone: --sources names no other model or engine."
+    wrong = lines["false"] + lines["missed"]
+    models, said = lines[lines["cells"].isna()], []
+    if len(models):
+        worst = wrong[models.index].idxmax()
+        said.append(f"{lines['source'][worst]} predicts {part(wrong[worst])} of the map wrongly")
+    if len(models) < len(lines):
+        engines = lines.drop(models.index)
+        presets = engines["source"].map(preset_of)
+        best = engines[presets == in_order(presets)[-1]]
+        cells = best["cells"].iloc[0]
+        right = (cells * (1.0 - wrong[best.index])).round() - best[[REST, NO_ANSWER]].sum(axis=1)
+        least = "at least " if right.nunique() > 1 else ""
+        whom = in_words(preset_of(best["source"].iloc[0]))
+        said.append(f"{whom}, engines predict {least}{out_of(right.min(), cells)} outcomes")
+    return f"{capital('; '.join(said))}."
+
+
+def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+    """Return the short tables beside the finding."""
+    if "parts" in tables:
+        return {
+            "Pulses by the width of the block": tables["parts"],
+            "Pulses by the rest before them": tables["rests"],
+        }
+    window, areas = window_of(tables), tables["map"]
+    whole = areas["x"].nunique() * (window.onsets - LEAST_ONSETS)
+    parts = areas.assign(
+        mode=areas["mode"].clip(-1, 4), part=(areas["high"] - areas["low"]) / whole
+    )
+    modes = parts.pivot_table("part", "model", "mode", aggfunc="sum", fill_value=0.0)
+    found = {
+        f"Parts of the map by impacts before a block overturns, {window.title}": modes.rename(
+            columns=dict(enumerate(MODES, -1))
+        ).reset_index(),
+    }
+    if (lines := tables.get("differences")) is not None:
+        ours = lines["cells"].isna()
+        named = "Parts of the map that a model gets wrong, and where nine tenths of each lie"
+        found[named] = lines[ours].dropna(axis=1, how="all")
+        cells = lines[~ours].astype({"cells": "Int64"}).dropna(axis=1, how="all")
+        found["Parts of the cells of a coarse grid that an engine gets wrong"] = cells
+    if "edges" in tables:
+        cases, thresholds = tables["edges"], tables["thresholds"]
+        above = (cases["offset"] > 0.0) == (cases["overturns"] == "above")
+        right = (cases["outcome"] == "overturned") == above
+        distance = cases["offset"].abs().map("{:g}".format)
+        beside = right.groupby([cases["source"], distance], sort=False).mean()
+        found[
+            "Parts of an engine's outcomes that are right, by the relative distance from an edge"
+        ] = beside.unstack().reset_index()
+        shift = thresholds["shift"].abs().groupby(thresholds["source"], sort=False)
+        found["Thresholds of an engine over the exact ones, less 1, where they are within 3 %"] = (
+            shift.agg(asked="size", found="count", median="median", largest="max").reset_index()
+        )
+    found["What the exact solution needs, where a block survives"] = needs(tables["validity"])
+    return found
+
+
+def needs(table: pd.DataFrame) -> pd.DataFrame:
+    """Return how many survivors of a grid need a pull at the pivot, from which amplitude on, and
+    the friction that the others need.
+    """
+    survives = table["outcome"] == Outcome.ROCKED.value
+    lifts = survives & (table["min_normal"] < 0.0)
+    friction = table.loc[survives & ~lifts, "friction_needed"]
+    line = {
+        **{"cells": len(table), "survive": survives.sum(), "lift_off": lifts.sum()},
+        **{"from_onsets": table.loc[lifts, "onsets"].min()},
+        **{"least_friction": friction.min(), "median_friction": friction.median()},
+    }
+    return pd.DataFrame([line])
+
+
+def figures(tables: Tables) -> Mapping[str, Figure]:
+    """Draw the map, what is wrong on it, and where it is sensitive; or the planes."""
+    from studies.drawing import overturning as drawing
+    from studies.overturning.planes import with_verdicts as judged
+
+    if "parts" in tables:
+        rows = judged(tables["defaults"])
+        widths = {"small": rows["width_m"].min(), "large": rows["width_m"].max()}
+        return {name: drawing.draw_plane(rows, width) for name, width in widths.items()}
+    window, areas = window_of(tables), tables["map"]
+    drawn = {
+        "map": drawing.draw_map(areas, window),
+        "conditioning": drawing.draw_conditioning(
+            tables["conditioning"], tables["validity"], window
+        ),
+    }
+    if "differences" in tables:
+        engines = tables.get("engines")
+        cells = None if engines is None else with_verdicts(engines, window)
+        drawn["differences"] = drawing.draw_differences(areas, cells, window)
+    return drawn
+
+
+STUDY = Study(
+    name="overturning",
+    question="Which pulses overturn a block, and who predicts that wrongly?",
+    help="""Overturning maps: which pulses overturn a block, after how many impacts.
+
+Amplitude over frequency, slenderness or size, for each model; the engines on a coarse grid and
+beside the edges; where each differs from the exact solution. With --planes the engines alone, pulse
+by pulse, of two similar blocks. A run that was interrupted goes on when the same command is given
+again.""",
+    sources=(
+        *("exact", "housner", "modified", "onset-matched"),
+        *core_sources("naive"),
+        *core_sources(),
+    ),
+    options=Options,
+    quick="A coarser map and fewer runs of the engines: less than a minute on 2 cores.",
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    # on the planes a failure of an engine is an answer
+    needed=lambda rows: [it for it in rows if "table" in it or it["source"] == "exact"],
+    rows="defaults",
+    running=Running(time_limit=180.0),
+    captions={
+        "map": "Amplitude over frequency: which pulses overturn a block at once, which after an "
+        "impact, and the least amplitude that overturns it by each linearization.",
+        "differences": "The same map for each linearization and engine: where it overturns and the "
+        "exact block survives, and the reverse.",
+        "conditioning": "The same map with κ as colour, by which a small error of the pulse grows "
+        "into one of the peak; lines: the friction that the exact motion needs, and where it would "
+        "lift off.",
+        "small": "Frequency and amplitude of full-sine pulses, a map for each engine as its "
+        "documentation shows it, for the smaller block: where the outcome is wrong, and where the "
+        "peak errs by more than a tenth.",
+        "large": "The same maps for the larger block, which by similarity should look the same.",
+    },
+)
+command = STUDY.command()

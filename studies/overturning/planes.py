@@ -1,0 +1,139 @@
+"""Engines pulse by pulse over twelve planes, of blocks that similarity makes alike."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import product
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from analytic import RigidBlock, SinePulse, simulate
+from analytic.motion import Delayed
+from engines import ENGINES
+from studies.cases.paper import PULSES
+from studies.kit.jobs import Job, Question
+from studies.kit.say import part
+from studies.measures.presets import engine_of
+from studies.measures.wrongness import FALL, KINDS, kinds_of
+from studies.sources.registry import resolve
+
+ASPECTS, WIDTHS_M = (2.0, 3.0, 4.0), (0.5, 2.0)
+RATIOS = tuple((0.5 * np.arange(1, 17)).tolist())
+ONSETS = tuple((1.0 + 0.6 * (np.arange(15) + 0.5)).tolist())
+"""ω/p, and amplitudes over g tan α."""
+REST_S = 1.0
+"""For how long all is at rest before every other pulse [s], in which an engine may fall asleep."""
+CLOSE = 0.1
+"""A peak within this part of the exact one is close."""
+CASE = ["pulse", "aspect", "width_m", "onsets", "omega_over_p", "rest_s"]
+RIGHT, FALSE, MISSED, OFF, INVALID = "right", "false", "missed", "peak off", "invalid"
+"""Verdicts, beside kinds of wrong outcomes; invalid where the block should slide or lift off."""
+
+
+def plane_jobs(sources: Sequence[str], quick: bool) -> list[Job]:
+    """Return a job for each pulse, block and source."""
+    every = 3 if quick else 1
+    planes = product(*((("full-sine",), (3.0,)) if quick else (PULSES, ASPECTS)), WIDTHS_M)
+    found = []
+    for plane, onsets, ratio in product(planes, ONSETS[::every], RATIOS[::every]):
+        block, motion = posed(*plane, onsets, ratio)
+        # every other pulse of a plane
+        rest_s = REST_S * ((ONSETS.index(onsets) + RATIOS.index(ratio)) % 2)
+        labels = {
+            **dict(zip(CASE, plane, strict=False)),
+            "amplitude_g": onsets * math.tan(block.alpha),
+            **{"onsets": onsets, "omega_over_p": ratio, "rest_s": rest_s},
+        }
+        case = Question(system=block, motion=Delayed(motion, rest_s) if rest_s else motion)
+        found += [Job(labels=labels, case=case, source=source) for source in sources]
+    return found
+
+
+def posed(
+    pulse: str, aspect: float, width_m: float, onsets: float, omega_over_p: float
+) -> tuple[RigidBlock, SinePulse]:
+    """Return the block and the pulse of a case, whose amplitude is so many times g tan α."""
+    block = RigidBlock(width=width_m, height=aspect * width_m)
+    return block, SinePulse(
+        amplitude=onsets * math.tan(block.alpha) * block.gravity,
+        omega=omega_over_p * block.p,
+        half_cycles=PULSES[pulse],
+    )
+
+
+def verdicts(found: ArrayLike, exact: ArrayLike) -> NDArray[np.str_]:
+    """Return for each outcome RIGHT, FALSE or MISSED (of an overturning), or its other kind."""
+    kinds = kinds_of(found, exact)
+    side = np.where(np.asarray(exact) == "overturned", MISSED, FALSE)
+    return np.select([kinds == "", kinds == FALL], [RIGHT, side], kinds)
+
+
+def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
+    """Add to rows of defaults.csv the exact outcome, the error of a peak, and the verdict."""
+    exact = rows[rows["source"] == "exact"].set_index(CASE)[["outcome", "peak_ratio"]]
+    # of the block without the rest before; inf if it would lift off
+    exact["needed"] = [simulate(*posed(*case[:-1])).friction_needed for case in exact.index]
+    right = exact.reindex(pd.MultiIndex.from_frame(rows[CASE])).reset_index(drop=True)
+    found = rows.reset_index(drop=True)
+    verdict = verdicts(found["outcome"], right["outcome"])
+    with np.errstate(invalid="ignore"):
+        error = (found["peak_ratio"] / right["peak_ratio"] - 1.0).where(
+            (verdict == RIGHT) & (right["outcome"] != "overturned")
+        )
+    verdict = np.where(error.abs() > CLOSE, OFF, verdict)
+    friction = found["source"].map({name: friction_of(name) for name in found["source"].unique()})
+    verdict = np.where(right["needed"] > friction, INVALID, verdict)
+    return found.assign(exact_outcome=right["outcome"], error=error, verdict=verdict)
+
+
+def friction_of(source: str) -> float:
+    """Return the friction of an engine's preset; that of a model is without bound."""
+    asked = resolve(source)
+    return float(asked.used.settings.friction) if asked.engine else math.inf
+
+
+def plane_tables(rows: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
+    """Return the rows, and a line for each engine and width, and for each engine and rest."""
+    known = with_verdicts(rows)
+    known = known[(known["source"] != "exact") & (known["verdict"] != INVALID)]
+    verdict = known["verdict"].replace({FALSE: FALL, MISSED: FALL})
+    known = known.assign(
+        **{kind: verdict == kind for kind in KINDS},
+        **{"close": verdict == RIGHT, "far": verdict == OFF, "size": known["error"].abs()},
+        false_overturnings=known["verdict"] == FALSE,
+        missed_overturnings=known["verdict"] == MISSED,
+    )
+
+    def sums(*names: str) -> dict[str, tuple[str, str]]:
+        return {name: (name, "sum") for name in names}
+
+    by_width, by_rest = (known.groupby(["source", by], sort=False) for by in ("width_m", "rest_s"))
+    parts = by_width.agg(
+        cases=("close", "size"),
+        **sums("close", "far", "false_overturnings", "missed_overturnings"),
+        median_error=("size", "median"),
+        p90_error=("size", lambda size: size.quantile(0.9)),
+        **sums("wall_s", *KINDS),
+    )
+    rests = by_rest.agg(cases=("close", "size"), **sums("close", *KINDS))
+    return {"defaults": rows, "parts": parts.reset_index(), "rests": rests.reset_index()}
+
+
+def plane_finding(parts: pd.DataFrame) -> str:
+    """Say between which parts of the pulses the engines predict."""
+    sums = parts.groupby("source", sort=False)[["close", "cases"]].sum()
+    shares = (sums["close"] / sums["cases"]).sort_values()
+    if shares.empty:
+        return "The exact solution stands alone: --sources names no engine."
+    ends = [f"{title(name)} predicts {part(shares[name])}" for name in shares.index[[0, -1]]]
+    what = f"of the pulses with a peak within {part(CLOSE)}"
+    return f"{ends[0]} {what}{f', {ends[1]}' if len(shares) > 1 else ''}."
+
+
+def title(source: str) -> str:
+    """Return an engine's name as its makers spell it."""
+    engine = engine_of(source)
+    return ENGINES[engine].title if engine in ENGINES else engine
