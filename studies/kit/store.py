@@ -234,6 +234,7 @@ class Store:
         tables: Mapping[str, pd.DataFrame],
         makers: Mapping[str, Maker],
         rows: int,
+        /,
         **asked: Any,
     ) -> None:
         """Write tables, and what a reader must know of how they were made.
