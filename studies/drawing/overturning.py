@@ -39,12 +39,12 @@ MODES = {
 VERDICTS = {
     "survives": ("#FFFFFF", "survives, as exact"),
     "overturns": ("#CCCCCC", "overturns, as exact"),
-    "peak off": ("#F7EE8A", "survives, peak off by more than 10 %"),
+    "peak off": ("#F7EE8A", "survives, peak off by > 10 %"),
     "false": ("#D55E00", "overturns, exact survives"),
     "missed": ("#0072B2", "survives, exact overturns"),
     REST: ("#56B4E9", "missed rocking"),
     NO_ANSWER: ("#000000", "no result"),
-    "invalid": ("#E6DCF0", "not counted: it should slide or lift off"),
+    "invalid": ("#E6DCF0", "not counted: should slide"),
 }
 """Verdict, or what is right -> its colour and name."""
 
@@ -92,7 +92,8 @@ def draw_differences(areas: pd.DataFrame, cells: pd.DataFrame | None, window: Wi
     Engines that differ in no cell are named instead, but for one if all are such.
     """
     models = [name for name in areas["model"].unique() if name != "exact"]
-    parts = {} if cells is None else dict(iter(cells.groupby("source", sort=False)))
+    groups = () if cells is None else cells.groupby("source", sort=False)
+    parts = {str(name): part for name, part in groups}
     right = [name for name, part in parts.items() if (part["verdict"] == "right").all()]
     shown = right[: len(right) == len(parts)]
     drawn = [*models, *(name for name in parts if name not in right or name in shown)]
@@ -138,7 +139,6 @@ def draw_conditioning(table: pd.DataFrame, forces: pd.DataFrame, window: Window)
     shown = axes.imshow(values.to_numpy().T, origin="lower", aspect="auto", cmap="viridis",
                         extent=_extent(window), norm=LogNorm(1.0, MOST_KAPPA))  # fmt: skip
     drawing.colorbar(shown, ax=axes, extend="max", label="κ of the exact peak  [–]")
-    halo = [withStroke(linewidth=3, foreground="white")]
     for name, levels, colour in (
         ("friction_needed", [0.3, 0.4, 0.5, 0.7, 1.0, 1.5], "#000000"),
         ("min_normal", [0.0], "#D55E00"),
@@ -147,7 +147,7 @@ def draw_conditioning(table: pd.DataFrame, forces: pd.DataFrame, window: Window)
         level = np.ma.masked_invalid(wide.to_numpy())
         if level.count() and min(wide.shape) > 1:
             lines = axes.contour(wide.columns, wide.index, level, levels, colors=colour)
-            lines.set_path_effects(halo)
+            lines.set_path_effects([withStroke(linewidth=3, foreground="white")])
             axes.clabel(lines, fmt=lambda at, name=name: f"μ = {at:g}" if at else "lifts off")
     _frame(axes, window)
     title = (

@@ -12,11 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.motion import Delayed
-from engines import ENGINES
 from studies.cases.paper import PULSES
 from studies.kit.jobs import Job, Question
 from studies.kit.say import part
-from studies.measures.presets import engine_of
 from studies.measures.wrongness import FALL, KINDS, kinds_of
 from studies.sources.registry import resolve
 
@@ -33,17 +31,19 @@ RIGHT, FALSE, MISSED, OFF, INVALID = "right", "false", "missed", "peak off", "in
 """Verdicts, beside kinds of wrong outcomes; invalid where the block should slide or lift off."""
 
 
-def plane_jobs(sources: Sequence[str], quick: bool) -> list[Job]:
+def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return a job for each pulse, block and source."""
     every = 3 if quick else 1
-    planes = product(*((("full-sine",), (3.0,)) if quick else (PULSES, ASPECTS)), WIDTHS_M)
+    pulses, aspects = (("full-sine",), (3.0,)) if quick else (tuple(PULSES), ASPECTS)
     found = []
-    for plane, onsets, ratio in product(planes, ONSETS[::every], RATIOS[::every]):
-        block, motion = posed(*plane, onsets, ratio)
+    for pulse, aspect, width_m, onsets, ratio in product(
+        pulses, aspects, WIDTHS_M, ONSETS[::every], RATIOS[::every]
+    ):
+        block, motion = posed(pulse, aspect, width_m, onsets, ratio)
         # every other pulse of a plane
         rest_s = REST_S * ((ONSETS.index(onsets) + RATIOS.index(ratio)) % 2)
         labels = {
-            **dict(zip(CASE, plane, strict=False)),
+            **{"pulse": pulse, "aspect": aspect, "width_m": width_m},
             "amplitude_g": onsets * math.tan(block.alpha),
             **{"onsets": onsets, "omega_over_p": ratio, "rest_s": rest_s},
         }
@@ -83,19 +83,14 @@ def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
         error = (found["peak_ratio"] / right["peak_ratio"] - 1.0).where(
             (verdict == RIGHT) & (right["outcome"] != "overturned")
         )
-    verdict = np.where(error.abs() > CLOSE, OFF, verdict)
-    friction = found["source"].map({name: friction_of(name) for name in found["source"].unique()})
-    verdict = np.where(right["needed"] > friction, INVALID, verdict)
+    asked = {name: resolve(name) for name in found["source"].unique()}
+    friction = {name: it.used.settings.friction for name, it in asked.items() if it.engine}
+    slides = right["needed"] > found["source"].map(friction)
+    verdict = np.where(slides, INVALID, np.where(error.abs() > CLOSE, OFF, verdict))
     return found.assign(exact_outcome=right["outcome"], error=error, verdict=verdict)
 
 
-def friction_of(source: str) -> float:
-    """Return the friction of an engine's preset; that of a model is without bound."""
-    asked = resolve(source)
-    return float(asked.used.settings.friction) if asked.engine else math.inf
-
-
-def plane_tables(rows: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
+def tables(rows: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
     """Return the rows, and a line for each engine and width, and for each engine and rest."""
     known = with_verdicts(rows)
     known = known[(known["source"] != "exact") & (known["verdict"] != INVALID)]
@@ -122,18 +117,11 @@ def plane_tables(rows: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
     return {"defaults": rows, "parts": parts.reset_index(), "rests": rests.reset_index()}
 
 
-def plane_finding(parts: pd.DataFrame) -> str:
+def finding(parts: pd.DataFrame) -> str:
     """Say between which parts of the pulses the engines predict."""
     sums = parts.groupby("source", sort=False)[["close", "cases"]].sum()
     shares = (sums["close"] / sums["cases"]).sort_values()
     if shares.empty:
         return "The exact solution stands alone: --sources names no engine."
-    ends = [f"{title(name)} predicts {part(shares[name])}" for name in shares.index[[0, -1]]]
-    what = f"of the pulses with a peak within {part(CLOSE)}"
-    return f"{ends[0]} {what}{f', {ends[1]}' if len(shares) > 1 else ''}."
-
-
-def title(source: str) -> str:
-    """Return an engine's name as its makers spell it."""
-    engine = engine_of(source)
-    return ENGINES[engine].title if engine in ENGINES else engine
+    ends = [f"{name} predicts {part(shares[name])}" for name in shares.index[[0, -1]]]
+    return f"{' and '.join(dict.fromkeys(ends))} of the pulses, with peaks within {part(CLOSE)}."

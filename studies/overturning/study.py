@@ -13,6 +13,7 @@ import pandas as pd
 from cyclopts import Parameter
 
 from analytic import MODELS, simulate
+from analytic.maps import Modes
 from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
 from studies.cases.refusal import BadInputError
@@ -25,15 +26,9 @@ from studies.kit.store import usable_cores
 from studies.kit.study import Study, Tables
 from studies.measures.presets import in_order, in_words, preset_of
 from studies.measures.wrongness import NO_ANSWER, REST
-from studies.overturning.edges import find_edges
-from studies.overturning.planes import (
-    FALSE,
-    MISSED,
-    plane_finding,
-    plane_jobs,
-    plane_tables,
-    verdicts,
-)
+from studies.overturning import planes
+from studies.overturning.edges import IntArray, find_edges
+from studies.overturning.planes import FALSE, MISSED
 from studies.sources.registry import core_sources, resolve
 
 if TYPE_CHECKING:
@@ -56,15 +51,13 @@ ROOM, SPREAD, SHARP = 0.04, 0.03, 1e-6
 own threshold is looked for; and that to which it is bisected."""
 WINDOW = tuple(item.name for item in fields(Window))
 ANSWER = ("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message")
+EDGE = ("table", "edge", "overturns")
 COLUMNS = {
     "engines": ("table", "x", "onsets", *ANSWER),
-    "edges": ("table", "edge", "overturns", "offset", "x", "onsets", *ANSWER),
-    "thresholds": (
-        *("table", "edge", "overturns", "x", "onsets"),
-        *("source", "outcome", "shift", "runs", "message"),
-    ),
+    "edges": (*EDGE, "offset", "x", "onsets", *ANSWER),
+    "thresholds": (*EDGE, "x", "onsets", "source", "outcome", "shift", "runs", "message"),
 }
-"""Table of engines -> its columns."""
+"""Columns of the tables of engines."""
 MODES = ("survives", "no_impact", "after_1", "after_2", "after_3", "after_more")
 """Columns of the parts of a map, from the mode -1 on."""
 
@@ -118,8 +111,7 @@ class Options:
         """Return the plane that is asked for; BadInputError if an option is beyond its limits."""
         for name, axes in APPLIES.items():
             if self.over not in axes:
-                words = f"only with --over {' or '.join(axes)}"
-                refuse_given({name: getattr(self, name)}, words)
+                refuse_given({name: getattr(self, name)}, f"only with --over {' or '.join(axes)}")
         given = {name: getattr(self, name) for name in WINDOW}
         cells = dict.fromkeys(("columns", "rows"), 200 if quick else 1000)
         with as_bad_input():
@@ -136,7 +128,7 @@ def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
         plain = Options(planes=True, yes=options.yes)
         given = {name: it for name, it in asdict(options).items() if it != getattr(plain, name)}
         refuse_given(given, "only without --planes")
-        return plane_jobs(sources, quick)
+        return planes.jobs(sources, quick)
     window = options.window(quick)
     models = [name for name in sources if name in MODELS]
     engines = [name for name in sources if name not in MODELS]
@@ -176,17 +168,17 @@ def refuse_too_much(window: Window, models: int, yes: bool) -> None:
 
 def edges_of(window: Window, model: str, x: FloatArray) -> pd.DataFrame:
     """Return the edges of a model's columns at some abscissae, a strip of columns at a time."""
-    amplitudes = [[LEAST_ONSETS], window.amplitudes(window.rows), [window.onsets]]
+    amplitudes = np.r_[LEAST_ONSETS, window.amplitudes(window.rows), window.onsets]
     width = max(STRIP // window.rows, 1)
     found = []
-    for start in range(0, len(x), width):
-        strip = x[start : start + width]
-        edges = find_edges(
-            lambda i, onsets, at=strip: window.modes(at[i], onsets, model),
-            len(strip),
-            np.concatenate(amplitudes),
-        )
-        found.append(edges.assign(column=strip[edges["column"]]).rename(columns={"column": "x"}))
+    for strip in (x[start : start + width] for start in range(0, len(x), width)):
+
+        def solve(column: IntArray, onsets: FloatArray, at: FloatArray = strip) -> Modes:
+            return window.modes(at[column], onsets, model)
+
+        edges = find_edges(solve, len(strip), amplitudes)
+        edges.insert(0, "x", strip[edges.pop("column")])
+        found.append(edges)
     return pd.concat(found, ignore_index=True)
 
 
@@ -241,53 +233,55 @@ def threshold(job: Job) -> Row:
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the tables of a map, or of planes."""
     if "table" not in rows:
-        return plane_tables(rows)
+        return planes.tables(rows)
     maps = rows[rows["table"] == "map"]
     plane = maps[list(WINDOW)].head(1).astype({"columns": int, "rows": int})
-    window = window_of({"window": plane})
-    x = window.centres(window.columns)
-    edges, areas = [], []
-    for model, found in zip(maps["source"], maps["edges"], strict=True):
-        known = pd.DataFrame(found)
-        lowest = window.modes(x, np.full(len(x), LEAST_ONSETS), model).mode
-        for each, table in ((edges, known), (areas, intervals(known, x, lowest, window.onsets))):
-            at = table["x"].to_numpy()
-            named = {"model": model, "x": at, "alpha": window.alpha(at)}
-            head = pd.DataFrame({**named, "omega_over_p": window.ratio(at)})
-            each.append(pd.concat([head, table.drop(columns="x")], axis=1))
-    at, onsets = window.points(KAPPA_CELLS)
-    kappa = window.condition_numbers(at, onsets)
-    conditions = {"x": at, "onsets": onsets, "kappa": kappa.amplitude}
+    window = window_of(plane)
+    edges = {name: pd.DataFrame(of) for name, of in zip(maps["source"], maps["edges"], strict=True)}
+    areas = {model: intervals(found, model, window) for model, found in edges.items()}
+    x, onsets = window.points(KAPPA_CELLS)
+    kappa = window.condition_numbers(x, onsets)
     tables = {
         "window": plane,
-        "boundaries": pd.concat(edges),
-        "map": pd.concat(areas),
-        "conditioning": pd.DataFrame({**conditions, "kappa_eta": kappa.restitution}),
+        "boundaries": _joined(edges, window),
+        "map": _joined(areas, window),
+        "conditioning": pd.DataFrame(
+            {"x": x, "onsets": onsets, "kappa": kappa.amplitude, "kappa_eta": kappa.restitution}
+        ),
         "validity": forces(window),
     }
     for name, columns in COLUMNS.items():
         if (mine := rows["table"] == name).any():
-            whole = {name: int for name in ("impacts", "steps", "runs") if name in columns}
+            whole = {each: int for each in ("impacts", "steps", "runs") if each in columns}
             tables[name] = rows.loc[mine, list(columns)].fillna({"runs": 0}).astype(whole)
     compared = differences(tables["map"], tables.get("engines"), window)
     return tables | ({"differences": compared} if len(compared) else {})
 
 
-def window_of(tables: Tables) -> Window:
-    """Return the plane that a map's tables are of."""
-    return Window(**tables["window"].to_dict("records")[0])
+def window_of(table: pd.DataFrame) -> Window:
+    """Return the plane of a map from its window.csv."""
+    return Window(**{str(name): value for name, value in table.to_dict("records")[0].items()})
 
 
-def intervals(
-    edges: pd.DataFrame, x: FloatArray, lowest: FloatArray, onsets: float
-) -> pd.DataFrame:
-    """Return the intervals of one mode from LEAST_ONSETS on, which meet in the middle of edges."""
+def _joined(tables: Mapping[str, pd.DataFrame], window: Window) -> pd.DataFrame:
+    """Return the tables of models as one, with what their abscissae are."""
+    whole = pd.concat(tables, names=["model"]).reset_index(level="model").reset_index(drop=True)
+    x = whole["x"].to_numpy()
+    whole.insert(2, "alpha", window.alpha(x))
+    whole.insert(3, "omega_over_p", window.ratio(x))
+    return whole
+
+
+def intervals(edges: pd.DataFrame, model: str, window: Window) -> pd.DataFrame:
+    """Return the intervals of one mode in each column, which meet in the middle of edges."""
+    x = window.centres(window.columns)
+    lowest = window.modes(x, np.full(len(x), LEAST_ONSETS), model).mode
     first = pd.DataFrame({"x": x, "low": LEAST_ONSETS, "mode": lowest})
     middle = 0.5 * (edges["low"] + edges["high"])
     later = pd.DataFrame({"x": edges["x"], "low": middle, "mode": edges["above"]})
     spans = pd.concat([first, later]).sort_values(["x", "low"], ignore_index=True)
-    high = spans.groupby("x")["low"].shift(-1).fillna(onsets)
-    return spans.assign(high=high)[["x", "low", "high", "mode"]]
+    spans.insert(2, "high", spans.groupby("x")["low"].shift(-1).fillna(window.onsets))
+    return spans
 
 
 def forces(window: Window) -> pd.DataFrame:
@@ -304,7 +298,7 @@ def with_verdicts(engines: pd.DataFrame, window: Window) -> pd.DataFrame:
     mode = window.modes(engines["x"].to_numpy(), engines["onsets"].to_numpy()).mode
     # no pulse of the map is too weak to lift the block
     exact = np.where(mode >= 0, Outcome.OVERTURNED.value, Outcome.ROCKED.value)
-    return engines.assign(exact_mode=mode, verdict=verdicts(engines["outcome"], exact))
+    return engines.assign(exact_mode=mode, verdict=planes.verdicts(engines["outcome"], exact))
 
 
 def differences(areas: pd.DataFrame, engines: pd.DataFrame | None, window: Window) -> pd.DataFrame:
@@ -352,103 +346,83 @@ def _of_model(exact: pd.DataFrame, area: pd.DataFrame, window: Window) -> dict[s
 def finding(tables: Tables) -> str:
     """Say how much of the map the worst linearization gets wrong, and how many cells engines do."""
     if "parts" in tables:
-        return plane_finding(tables["parts"])
-    lines = tables.get("differences")
-    if lines is None:
-        return "The exact map stands alone: --sources names no other model or engine."
-    wrong = lines["false"] + lines["missed"]
-    models, said = lines[lines["cells"].isna()], []
+        return planes.finding(tables["parts"])
+    lines, said = tables.get("differences", pd.DataFrame({"cells": []})), []
+    models, engines = (lines[of].copy() for of in (lines["cells"].isna(), lines["cells"].notna()))
     if len(models):
-        worst = wrong[models.index].idxmax()
-        said.append(f"{lines['source'][worst]} predicts {part(wrong[worst])} of the map wrongly")
-    if len(models) < len(lines):
-        engines = lines.drop(models.index)
+        wrong = (models[FALSE] + models[MISSED]).set_axis(models["source"])
+        said.append(f"{wrong.idxmax()} predicts {part(wrong.max())} of the map wrongly")
+    if len(engines):
         presets = engines["source"].map(preset_of)
-        best = engines[presets == in_order(presets)[-1]]
-        cells = best["cells"].iloc[0]
-        right = (cells * (1.0 - wrong[best.index])).round() - best[[REST, NO_ANSWER]].sum(axis=1)
+        best = in_order(presets)[-1]
+        engines = engines[presets == best]
+        falls = (engines["cells"] * (engines[FALSE] + engines[MISSED])).round()
+        right = engines["cells"] - falls - engines[[REST, NO_ANSWER]].sum(axis=1)
         least = "at least " if right.nunique() > 1 else ""
-        whom = in_words(preset_of(best["source"].iloc[0]))
-        said.append(f"{whom}, engines predict {least}{out_of(right.min(), cells)} outcomes")
-    return f"{capital('; '.join(said))}."
+        cells = out_of(right.min(), engines["cells"].max())
+        said.append(f"{in_words(best)}, engines predict {least}{cells} outcomes")
+    return f"{capital('; '.join(said) or 'exact maps the plane alone')}."
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     """Return the short tables beside the finding."""
     if "parts" in tables:
-        return {
-            "Pulses by the width of the block": tables["parts"],
-            "Pulses by the rest before them": tables["rests"],
-        }
-    window, areas = window_of(tables), tables["map"]
+        by = {"width of the block": "parts", "rest before them": "rests"}
+        return {f"Pulses by the {name}": tables[table] for name, table in by.items()}
+    window, areas, lines = window_of(tables["window"]), tables["map"], tables.get("differences")
     whole = areas["x"].nunique() * (window.onsets - LEAST_ONSETS)
-    parts = areas.assign(
-        mode=areas["mode"].clip(-1, 4), part=(areas["high"] - areas["low"]) / whole
-    )
-    modes = parts.pivot_table("part", "model", "mode", aggfunc="sum", fill_value=0.0)
-    found = {
-        f"Parts of the map by impacts before a block overturns, {window.title}": modes.rename(
-            columns=dict(enumerate(MODES, -1))
-        ).reset_index(),
-    }
-    if (lines := tables.get("differences")) is not None:
-        ours = lines["cells"].isna()
-        named = "Parts of the map that a model gets wrong, and where nine tenths of each lie"
-        found[named] = lines[ours].dropna(axis=1, how="all")
-        cells = lines[~ours].astype({"cells": "Int64"}).dropna(axis=1, how="all")
-        found["Parts of the cells of a coarse grid that an engine gets wrong"] = cells
+    mode, part = areas["mode"].clip(-1, 4), (areas["high"] - areas["low"]) / whole
+    parts = part.groupby([areas["model"], mode]).sum().unstack(fill_value=0)
+    parts = parts.rename(columns=dict(enumerate(MODES, -1))).reset_index()
+    found = {f"Parts of the map by impacts before a block overturns, {window.title}": parts}
+    if lines is not None:
+        ours, cells = lines["cells"].isna(), lines.astype({"cells": "Int64"})
+        words = "Parts of the map that a model gets wrong, and where nine tenths of each lie"
+        found[words] = lines[ours].dropna(axis=1, how="all")
+        words = "Parts of the cells of a coarse grid that an engine gets wrong"
+        found[words] = cells[~ours].dropna(axis=1, how="all")
     if "edges" in tables:
         cases, thresholds = tables["edges"], tables["thresholds"]
         above = (cases["offset"] > 0.0) == (cases["overturns"] == "above")
         right = (cases["outcome"] == "overturned") == above
         distance = cases["offset"].abs().map("{:g}".format)
-        beside = right.groupby([cases["source"], distance], sort=False).mean()
-        found[
+        beside = right.groupby([cases["source"], distance], sort=False).mean().unstack()
+        words = (
             "Parts of an engine's outcomes that are right, by the relative distance from an edge"
-        ] = beside.unstack().reset_index()
-        shift = thresholds["shift"].abs().groupby(thresholds["source"], sort=False)
-        found["Thresholds of an engine over the exact ones, less 1, where they are within 3 %"] = (
-            shift.agg(asked="size", found="count", median="median", largest="max").reset_index()
         )
-    found["What the exact solution needs, where a block survives"] = needs(tables["validity"])
-    return found
+        found[words] = beside.reset_index()
+        shift = thresholds["shift"].abs().groupby(thresholds["source"], sort=False)
+        shifts = shift.agg(asked="size", found="count", median="median", largest="max")
+        words = "Thresholds of an engine over the exact ones, less 1, where they are within 3 %"
+        found[words] = shifts.reset_index()
+    return {**found, "What exact motions that survive need": needs(tables["validity"])}
 
 
-def needs(table: pd.DataFrame) -> pd.DataFrame:
-    """Return how many survivors of a grid need a pull at the pivot, from which amplitude on, and
-    the friction that the others need.
-    """
-    survives = table["outcome"] == Outcome.ROCKED.value
-    lifts = survives & (table["min_normal"] < 0.0)
-    friction = table.loc[survives & ~lifts, "friction_needed"]
-    line = {
-        **{"cells": len(table), "survive": survives.sum(), "lift_off": lifts.sum()},
-        **{"from_onsets": table.loc[lifts, "onsets"].min()},
-        **{"least_friction": friction.min(), "median_friction": friction.median()},
-    }
-    return pd.DataFrame([line])
+def needs(forces: pd.DataFrame) -> pd.DataFrame:
+    """Return how many survivors lift off, from which amplitude on, and the others' friction."""
+    survives = forces["outcome"] == Outcome.ROCKED.value
+    lifts = survives & (forces["min_normal"] < 0.0)
+    friction = forces.loc[survives & ~lifts, "friction_needed"]
+    counts = {"cells": len(forces), "survive": survives.sum(), "lift_off": lifts.sum()}
+    ends = {"least_friction": friction.min(), "median_friction": friction.median()}
+    return pd.DataFrame([{**counts, "from_onsets": forces.loc[lifts, "onsets"].min(), **ends}])
 
 
 def figures(tables: Tables) -> Mapping[str, Figure]:
     """Draw the map, what is wrong on it, and where it is sensitive; or the planes."""
     from studies.drawing import overturning as drawing
-    from studies.overturning.planes import with_verdicts as judged
 
     if "parts" in tables:
-        rows = judged(tables["defaults"])
-        widths = {"small": rows["width_m"].min(), "large": rows["width_m"].max()}
+        rows = planes.with_verdicts(tables["defaults"])
+        widths = dict(zip(("small", "large"), planes.WIDTHS_M, strict=True))
         return {name: drawing.draw_plane(rows, width) for name, width in widths.items()}
-    window, areas = window_of(tables), tables["map"]
-    drawn = {
-        "map": drawing.draw_map(areas, window),
-        "conditioning": drawing.draw_conditioning(
-            tables["conditioning"], tables["validity"], window
-        ),
-    }
+    window, engines = window_of(tables["window"]), tables.get("engines")
+    kappa, forces = tables["conditioning"], tables["validity"]
+    drawn = {"map": drawing.draw_map(tables["map"], window)}
+    drawn["conditioning"] = drawing.draw_conditioning(kappa, forces, window)
     if "differences" in tables:
-        engines = tables.get("engines")
         cells = None if engines is None else with_verdicts(engines, window)
-        drawn["differences"] = drawing.draw_differences(areas, cells, window)
+        drawn["differences"] = drawing.draw_differences(tables["map"], cells, window)
     return drawn
 
 
@@ -467,7 +441,7 @@ again.""",
         *core_sources(),
     ),
     options=Options,
-    quick="A coarser map and fewer runs of the engines: less than a minute on 2 cores.",
+    quick="A coarser map and fewer runs of the engines.",
     jobs=jobs,
     measure=measure,
     tabulate=tabulate,
