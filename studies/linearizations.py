@@ -152,17 +152,11 @@ def finding(tables: Tables) -> str:
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
-    """Return the paper's conclusions, a line for each variant, and the named ones by H/B."""
+    """Return the paper's conclusions, and a line for each variant."""
     lines = tables["linearizations"].set_index("grid")[["title", "cases", *WRONG, *ERRORS]]
-    empty = pd.DataFrame(columns=["grid", "aspect", "changed", "median_error"])
-    wide = tables.get("slenderness", empty).query("grid == 'wide'")
-    medians = wide.pivot(index="aspect", columns="changed", values="median_error")
     return {
         "What the paper concludes": tables["findings"],
-        **{f"On the {name} grid": lines.loc[name] for name in GRIDS},
-        "On the wide grid by H/B, the median error": (
-            medians.reindex(columns=list(NAMED)).rename(columns=NAMED).reset_index()
-        ),
+        **{f"On the {name} grid": lines.loc[[name]] for name in GRIDS},
     }
 
 
