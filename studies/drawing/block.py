@@ -1,4 +1,4 @@
-"""The block with the names of its parts, blocks as outlines, and the picture of the front page."""
+"""Blocks as outlines: one with the names of its parts, a scene, the picture of the front page."""
 
 from __future__ import annotations
 
@@ -14,35 +14,33 @@ from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray
 from engines.layouts import System, layout_of
-from studies.drawing.styles import engine_title, style_of, title_of
-from studies.measures.presets import is_engine, preset_of, told
-from studies.measures.words import signed
+from studies.drawing.styles import full_name, style_of, title_of
+from studies.kit.say import power
 
-INK, SOFT, BLOCK, GROUND = "#1b1b1b", "#666666", "#cfe0ee", "#d9d9d4"
+INK, SOFT, BLOCK, GROUND, GHOST = "#1b1b1b", "#666666", "#cfe0ee", "#d9d9d4", "#c9c9c9"
+WHOLE: dict[str, Any] = {"facecolor": BLOCK, "edgecolor": INK, "linewidth": 1.8}
+DASHED: dict[str, Any] = {"fill": False, "linestyle": (0, (4, 3)), "edgecolor": SOFT}
+MAGNIFIED = 2.5
+"""How many times their size the rotations of the outlines are drawn."""
 
 
 def outline(width: float, height: float, theta: float) -> FloatArray:
-    """Return the corners of a block turned by `theta` [rad] about the corner that it stands on.
+    """Return the corners of a block turned clockwise by `theta` [rad] about the one it stands on.
 
-    The first row is that corner, at ±width/2 on the base. Positive rotations are clockwise.
+    The first row is that corner, at ±width/2 on the base.
     """
     side = 1.0 if theta >= 0.0 else -1.0
-    pivot = np.array([side * 0.5 * width, 0.0])
     corners = np.array([[0.0, 0.0], [-side * width, 0.0], [-side * width, height], [0.0, height]])
     sine, cosine = math.sin(theta), math.cos(theta)
-    turned: FloatArray = corners @ np.array([[cosine, -sine], [sine, cosine]]) + pivot
+    pivot, turn = [side * 0.5 * width, 0.0], np.array([[cosine, -sine], [sine, cosine]])
+    turned: FloatArray = corners @ turn + pivot
     return turned
 
 
 def outlines(system: System, at: float) -> FloatArray:
     """Return the corners of every body of a system, shape (bodies, 4, 2) [m].
 
-    Parameters
-    ----------
-    system : System
-        One of those in `engines.layouts.LAYOUTS`.
-    at : float
-        Its rotation [rad], or its place along the base [m] where nothing rocks.
+    `at` is its rotation [rad], or its place along the base [m] where nothing rocks.
     """
     corners = []
     for body in layout_of(system, 1.0, None, (at, 0.0)).bodies:
@@ -54,34 +52,8 @@ def outlines(system: System, at: float) -> FloatArray:
     return np.array(corners)
 
 
-def draw_block() -> Figure:
-    """Draw a block that rocks to the right, with the names of its parts."""
-    width, height, theta = 1.0, 2.2, 0.22  # in units of the drawing, and in rad
-    drawing = Figure(figsize=(4.4, 4.6), layout="constrained")
-    axes = drawing.subplots()
-    axes.set(xlim=(-1.2, 1.75), ylim=(-0.5, 2.6), aspect="equal")
-    axes.set_axis_off()
-    axes.add_patch(Rectangle((-1.2, -0.16), 2.95, 0.16, color=GROUND, linewidth=0))
-    at_rest = outline(width, height, 1e-12)
-    axes.add_patch(Polygon(at_rest, fill=False, linestyle=(0, (4, 3)), edgecolor=SOFT))
-    corners = outline(width, height, theta)
-    axes.add_patch(Polygon(corners, facecolor=BLOCK, edgecolor=INK, linewidth=1.8))
-    _dimensions(axes, corners)
-    _angles(axes, corners, width, height, theta)
-    axes.add_patch(_arrow((0.35, -0.36), (-0.55, -0.36), "-|>", INK, 2.0))
-    axes.text(0.45, -0.36, "ü$_g$", va="center", fontsize=15)
-    return drawing
-
-
 def draw_scene(system: System, at: float) -> Figure:
-    """Draw the bodies of a system where they are, and dashed where they are at rest.
-
-    Parameters
-    ----------
-    system : System
-    at : float
-        As for `outlines`: rotation [rad], or place along the base [m] where nothing rocks.
-    """
+    """Draw the bodies of a system where they are, and dashed where they are at rest."""
     rest, moved = outlines(system, 0.0), outlines(system, at)
     every = np.concatenate((rest, moved))
     (left, _), (right, top) = every.min(axis=(0, 1)), every.max(axis=(0, 1))
@@ -89,75 +61,63 @@ def draw_scene(system: System, at: float) -> Figure:
     across, high = right - left + 2.0 * spare, top + 2.0 * spare
     inch = min(4.4 / across, 3.4 / high)
     drawing = Figure(figsize=(across * inch, 0.3 + high * inch), layout="constrained")
-    axes = drawing.subplots()
-    axes.set(xlim=(left - spare, right + spare), ylim=(-spare, top + spare), aspect="equal")
-    axes.set_axis_off()
-    ground = (left - spare, -0.5 * spare), across, 0.5 * spare
-    axes.add_patch(Rectangle(*ground, color=GROUND, linewidth=0))
+    axes = _stage(drawing, (left - spare, right + spare), (-spare, top + spare), 0.5 * spare)
     for corners in moved:
-        axes.add_patch(Polygon(corners, facecolor=BLOCK, edgecolor=INK, linewidth=1.8))
+        axes.add_patch(Polygon(corners, **WHOLE))
     for corners in rest:
-        axes.add_patch(Polygon(corners, fill=False, linestyle=(0, (4, 3)), edgecolor=SOFT))
+        axes.add_patch(Polygon(corners, **DASHED))
     return drawing
 
 
-def _dimensions(axes: Axes, corners: FloatArray) -> None:
-    pivot, foot, far, _ = corners
+def _stage(
+    drawing: Figure, across: tuple[float, float], high: tuple[float, float], ground: float
+) -> Axes:
+    """Return axes without a frame, with ground of some thickness along them."""
+    axes = drawing.subplots()
+    axes.set(xlim=across, ylim=high, aspect="equal")
+    axes.set_axis_off()
+    axes.add_patch(
+        Rectangle((across[0], -ground), across[1] - across[0], ground, color=GROUND, linewidth=0)
+    )
+    return axes
+
+
+def draw_block() -> Figure:
+    """Draw a block that rocks to the right, with the names of its parts."""
+    width, height, theta = 1.0, 2.2, 0.22  # in units of the drawing, and in rad
+    drawing = Figure(figsize=(4.4, 4.6), layout="constrained")
+    axes = _stage(drawing, (-1.2, 1.75), (-0.5, 2.6), 0.16)
+    pivot, foot, far, top = corners = outline(width, height, theta)
+    axes.add_patch(Polygon(outline(width, height, 1e-12), **DASHED))
+    axes.add_patch(Polygon(corners, **WHOLE))
     centre = 0.5 * (pivot + far)
+    letters: dict[str, Any] = {"fontsize": 15, "va": "center"}
     for start, end, name in ((pivot, foot, "B"), (foot, far, "H")):
         middle = 0.5 * (start + end)
         outward = (middle - centre) / np.linalg.norm(middle - centre)
-        shift = 0.12 * outward
-        axes.add_patch(_arrow(start + shift, end + shift, "<|-|>", SOFT))
+        axes.add_patch(_arrow(start + 0.12 * outward, end + 0.12 * outward, "<|-|>", SOFT))
         x, y = middle + 0.3 * outward
-        axes.text(x, y, name, ha="center", va="center", fontsize=15)
-
-
-def _angles(axes: Axes, corners: FloatArray, width: float, height: float, theta: float) -> None:
-    pivot, _, far, top = corners
-    centre = 0.5 * (pivot + far)
+        axes.text(x, y, name, ha="center", **letters)
     axes.plot(*np.array([pivot, centre]).T, color=INK, linewidth=1.4)
     axes.plot(*centre, "o", color=INK, markersize=5)
     x, y = 0.62 * centre + 0.38 * pivot
-    axes.text(x - 0.15, y, "R", fontsize=15, va="center")
+    axes.text(x - 0.15, y, "R", **letters)
     along = math.degrees(math.atan2(*(top - pivot)[::-1]))
-    alpha = math.degrees(math.atan2(width, height))
-    axes.add_patch(Arc(tuple(pivot), 1.3, 1.3, theta1=along, theta2=along + alpha, color=INK))
-    _at(axes, pivot, 0.78, along + 0.5 * alpha, "α")
-    degrees = math.degrees(theta)
-    axes.add_patch(Arc(tuple(pivot), 2.3, 2.3, theta1=180.0 - degrees, theta2=180.0, color=INK))
-    _at(axes, pivot, 1.3, 180.0 - 0.5 * degrees, "θ")
+    alpha, turned = math.degrees(math.atan2(width, height)), math.degrees(theta)
+    arcs = ((1.3, along, along + alpha, 0.78, "α"), (2.3, 180.0 - turned, 180.0, 1.3, "θ"))
+    for size, first, last, distance, name in arcs:
+        axes.add_patch(Arc(tuple(pivot), size, size, theta1=first, theta2=last, color=INK))
+        angle = math.radians(0.5 * (first + last))
+        x, y = pivot + distance * np.array([math.cos(angle), math.sin(angle)])
+        axes.text(x, y, name, ha="center", **letters)
+    axes.add_patch(_arrow((0.35, -0.36), (-0.55, -0.36), "-|>", INK, linewidth=2.0))
+    axes.text(0.45, -0.36, "ü$_g$", **letters)
+    return drawing
 
 
-def _at(axes: Axes, origin: FloatArray, distance: float, degrees: float, name: str) -> None:
-    angle = math.radians(degrees)
-    x, y = origin + distance * np.array([math.cos(angle), math.sin(angle)])
-    axes.text(x, y, name, ha="center", va="center", fontsize=15)
-
-
-def _arrow(
-    start: FloatArray | tuple[float, float],
-    end: FloatArray | tuple[float, float],
-    style: str,
-    colour: str,
-    width: float = 1.0,
-) -> FancyArrowPatch:
-    return FancyArrowPatch(
-        tuple(start),
-        tuple(end),
-        arrowstyle=style,
-        mutation_scale=12,
-        color=colour,
-        linewidth=width,
-        shrinkA=0,
-        shrinkB=0,
-    )
-
-
-MAGNIFIED = 2.5
-"""How many times their size the rotations of the outlines are drawn."""
-
-GHOST = "#c9c9c9"
+def _arrow(start: Any, end: Any, style: str, colour: str, linewidth: float = 1.0) -> Any:
+    return FancyArrowPatch(tuple(start), tuple(end), arrowstyle=style, mutation_scale=12,
+                           color=colour, linewidth=linewidth, shrinkA=0, shrinkB=0)  # fmt: skip
 
 
 def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> Figure:
@@ -173,64 +133,51 @@ def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> 
     """
     drawing = Figure(figsize=(10.0, 6.0), layout="constrained")
     upper, lower = drawing.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.25))[:, 0]
-    others = lines[lines["source"] != "exact"]
-    exact = samples[samples["source"] == "exact"]
+    found = {str(source): points for source, points in samples.groupby("source", sort=False)}
+    exact = found["exact"]
     instant = float(exact["time_s"].to_numpy()[np.argmax(exact["theta_ratio"].abs())])
+    at = {
+        source: float(np.interp(instant, points["time_s"], points["theta_ratio"]))  # or the last
+        for source, points in found.items()
+    }
+    others = lines[lines["source"] != "exact"]
     panels = upper.subplots(1, len(others), sharey=True)
-    for axes, (_, line) in zip(panels, others.iterrows(), strict=True):
-        source = str(line["source"])
-        right, found = (
-            float(np.interp(instant, points["time_s"], points["theta_ratio"]))  # or the last one
-            for points in (exact, samples[samples["source"] == source])
-        )
-        _outlines(axes, block, right, found, style_of(source).colour)
-        axes.set_title(_title(line), fontsize=10, fontweight="bold")
-        axes.text(
-            0.5, -0.03, _verdict(line), transform=axes.transAxes, ha="center", va="top", fontsize=11
-        )
-    _histories(lower.subplots(), samples, lines, instant)
+    for axes, line in zip(panels, others.to_dict("records"), strict=True):
+        source = line["source"]
+        axes.set(xlim=(-1.15, 1.15), ylim=(-0.12, 1.75), aspect="equal")
+        axes.set_axis_off()
+        axes.add_patch(Rectangle((-1.15, -0.1), 2.3, 0.1, color=GROUND, linewidth=0))
+        looks: list[tuple[float, dict[str, Any]]] = [
+            (at["exact"], {"facecolor": GHOST, "edgecolor": "#8a8a8a", "linewidth": 0.8}),
+            (at[source], {"fill": False, "edgecolor": style_of(source).colour, "linewidth": 2.2}),
+        ]
+        for ratio, look in looks:
+            theta = min(max(MAGNIFIED * ratio * block.alpha, -0.5 * math.pi), 0.5 * math.pi)
+            axes.add_patch(Polygon(outline(block.width, block.height, theta), **look))
+        housner = "Housner's linearization"
+        title = housner if source == "housner" else full_name(source)
+        axes.set_title(title, fontsize=10, fontweight="bold")
+        axes.text(0.5, -0.03, _verdict(line), transform=axes.transAxes, ha="center", va="top",
+                  fontsize=11)  # fmt: skip
+    _histories(lower.subplots(), found, instant)
     return drawing
 
 
-def _title(line: pd.Series[Any]) -> str:
-    source = str(line["source"])
-    if not is_engine(source):
-        return "Housner's linearization" if source == "housner" else source
-    return f"{engine_title(source)}, {told(preset_of(source)).short}"
-
-
-def _verdict(line: pd.Series[Any]) -> str:
+def _verdict(line: dict[Any, Any]) -> str:
+    error = float(line["error"])
     if line["outcome"] != "rocked":
         return str(line["outcome"])
-    error = float(line["error"])
-    return f"peak {'within ' * (abs(error) < 1e-3)}{signed(error)}"
+    if abs(error) < 1e-3:
+        return f"peak within {power(abs(error))}"
+    return f"peak {error:+.0%}".replace("-", "−").replace("%", " %")
 
 
-def _outlines(axes: Axes, block: RigidBlock, exact: float, found: float, colour: str) -> None:
-    axes.set(xlim=(-1.15, 1.15), ylim=(-0.12, 1.75), aspect="equal")
-    axes.set_axis_off()
-    axes.add_patch(Rectangle((-1.15, -0.1), 2.3, 0.1, color=GROUND, linewidth=0))
-    looks: list[tuple[float, dict[str, Any]]] = [
-        (exact, {"facecolor": GHOST, "edgecolor": "#8a8a8a", "linewidth": 0.8}),
-        (found, {"fill": False, "edgecolor": colour, "linewidth": 2.2}),
-    ]
-    for ratio, look in looks:
-        theta = min(max(MAGNIFIED * ratio * block.alpha, -0.5 * math.pi), 0.5 * math.pi)
-        axes.add_patch(Polygon(outline(block.width, block.height, theta), **look))
-
-
-def _histories(axes: Axes, samples: pd.DataFrame, lines: pd.DataFrame, instant: float) -> None:
-    for source in lines["source"]:
-        points = samples[samples["source"] == source]
-        axes.plot(points["time_s"], points["theta_ratio"], **_look(str(source)))
-    limit = 1.15 * float(samples.loc[samples["source"] == "exact", "theta_ratio"].abs().max())
-    top = max(limit, 0.62)
-    axes.set(
-        xlim=(0.0, float(samples["time_s"].max())),
-        ylim=(-top, top),
-        xlabel="time  [s]",
-        ylabel="rotation  θ/θcr  [–]",
-    )
+def _histories(axes: Axes, found: dict[str, pd.DataFrame], instant: float) -> None:
+    for source, points in found.items():
+        axes.plot(points["time_s"], points["theta_ratio"], **_look(source))
+    top = max(1.15 * float(found["exact"]["theta_ratio"].abs().max()), 0.62)
+    axes.set(xlim=(0.0, max(float(points["time_s"].max()) for points in found.values())),
+             ylim=(-top, top), xlabel="time  [s]", ylabel="rotation  θ/θcr  [–]")  # fmt: skip
     axes.axvline(instant, color=SOFT, linewidth=0.8, linestyle=(0, (2, 3)))
     words = f" outlines above: rotations drawn {MAGNIFIED:g} times as large; exact in grey"
     axes.text(instant, -0.95 * top, words, fontsize=8.5, color=SOFT)
@@ -242,24 +189,17 @@ def _histories(axes: Axes, samples: pd.DataFrame, lines: pd.DataFrame, instant: 
 
 def _look(source: str) -> dict[str, Any]:
     """Return how a history is drawn: the exact one as a band on which landing steps lie."""
-    style = style_of(source)
-    engine, colon, _ = source.partition(":")
+    style, (engine, colon, _) = style_of(source), source.partition(":")
     if source == "exact":
         return {"color": GHOST, "linewidth": 7.0, "label": "exact", "zorder": 1}
     if colon:
-        return {
-            "color": style.colour,
-            "linewidth": 1.6,
-            "label": f"{title_of(engine)}, as documented",
-        }
-    if style.marker:
-        return {
-            "color": style.colour,
-            "linestyle": "none",
-            "marker": style.marker,
-            "markersize": 5.0,
-            "markerfacecolor": "none",
-            "markevery": (0 if style.marker == "o" else 8, 16),
-            "label": f"{title_of(engine)}, landing steps",
-        }
-    return {"color": style.colour, "linestyle": "--", "linewidth": 1.8, "label": "Housner"}
+        label = f"{title_of(engine)}, as documented"
+        return {"color": style.colour, "linewidth": 1.6, "label": label}
+    if not style.marker:
+        return {"color": style.colour, "linestyle": "--", "linewidth": 1.8, "label": "Housner"}
+    return {
+        **{"color": style.colour, "linestyle": "none", "marker": style.marker, "markersize": 5.0},
+        "markerfacecolor": "none",
+        "markevery": (0 if style.marker == "o" else 8, 16),
+        "label": f"{title_of(engine)}, landing steps",
+    }

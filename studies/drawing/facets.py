@@ -10,22 +10,20 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure, FigureBase
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.typing import ColorType
 from numpy.typing import ArrayLike
 
+from studies.kit.say import power
 from studies.measures.presets import in_order, told
-from studies.measures.words import power
 
 STRIP = "#eeeeee"
 """Behind what has no place on a scale: failed or wrong."""
 ERRORS = "cividis_r"
 """Colours of errors from small to large, the same in order of lightness for every reader."""
 HALO = [withStroke(linewidth=2.5, foreground="white")]
-
-
 NARROWEST = 7.6
 """Width that title and key of one panel need [in]."""
 
@@ -50,60 +48,24 @@ def panels(
     down = max(math.ceil(count / across), 1)
     size = (max(each[0] * across, NARROWEST), each[1] * down + extra)
     drawing = Figure(figsize=size, layout="constrained")
-    return drawing, in_rows(drawing, count, across, **shared)
-
-
-def in_rows(drawing: FigureBase, count: int, across: int, **shared: Any) -> list[Axes]:
-    """Return some panels in rows of a figure or of a part of one.
-
-    Parameters
-    ----------
-    drawing : Figure or SubFigure
-    count, across, shared
-        As for `panels`, but that across is at least 1 and at most count.
-    """
-    down = max(math.ceil(count / across), 1)
     grid = list(drawing.subplots(down, across, squeeze=False, **shared).flat)
     for axes in grid[count:]:
         axes.remove()
     for axes in grid[max(count - across, 0) : count]:
         axes.tick_params(labelbottom=True)
-    return grid[:count]
-
-
-def mark(error: float) -> str:
-    """Return an error as a mark along an axis: in per cent from 0.1 % on, else a power of ten."""
-    return f"{100.0 * error:g} %" if error >= 0.999e-3 else power(error)
+    return drawing, grid[:count]
 
 
 def error_scale(axis: Axis, low: float, high: float, every: int = 2) -> None:
-    """Mark a logarithmic axis of errors at every so many powers of ten up to 100 %.
-
-    Parameters
-    ----------
-    axis : Axis
-        The x or y axis of a panel; errors are relative, 1.0 is 100 %.
-    low, high : float
-        Errors between which there are marks; none below 1e-16.
-    every : int, optional
-        Powers of ten from a mark to the next, counted from 100 % down.
-    """
-    powers = [k for k in range(0, -17, -every) if low <= 10.0**k <= high]
-    axis.set_ticks([10.0**k for k in powers], [mark(10.0**k) for k in powers])
+    """Mark a logarithmic axis of relative errors at every so many powers of ten up to 100 %."""
+    errors = [10.0**k for k in range(0, -17, -every) if low <= 10.0**k <= high]
+    marks = [f"{100.0 * error:g} %" if error >= 0.999e-3 else power(error) for error in errors]
+    axis.set_ticks(errors, marks)
     axis.set_ticks([], minor=True)
 
 
 def rows(axes: Axes, names: Sequence[str], size: float = 9.0) -> None:
-    """Name the rows of a panel from above, and draw a line along each.
-
-    Parameters
-    ----------
-    axes : Axes
-        The first name stands at y = 0, the next ones at 1, 2, ..., downwards.
-    names : sequence of str
-    size : float, optional
-        Of the letters [points].
-    """
+    """Name the rows of a panel from above, at y = 0, 1, ..., and draw a line along each."""
     axes.set_yticks(range(len(names)), names, fontsize=size)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
@@ -114,73 +76,44 @@ def rows(axes: Axes, names: Sequence[str], size: float = 9.0) -> None:
 
 
 def strip_beyond(axes: Axes, start: float, words: str, *, along: str = "y") -> None:
-    """Shade what lies beyond the scale, from a value on, and say what stands there.
+    """Shade what lies beyond a logarithmic scale, from a value on, and say what stands there.
 
-    Parameters
-    ----------
-    axes : Axes
-        Logarithmic along the scale, with the limits that it will keep.
-    start : float
-        Where the strip begins, in units of the axis; it ends at the larger limit.
-    words : str
-        In the middle of the strip, by the logarithm; none where empty.
-    along : {"y", "x"}, optional
-        The axis of the scale.
+    The axes must have the limits that they will keep; the strip ends at the larger one.
     """
-    low, high = getattr(axes, f"get_{along}lim")()
-    end = max(low, high)
+    end = max(getattr(axes, f"get_{along}lim")())
+    look: dict[str, Any] = {"color": STRIP, "zorder": -2, "linewidth": 0.0}
+    letters: dict[str, Any] = {"fontsize": 8, "color": "#666666"}
     if along == "y":
-        axes.axhspan(start, end, color=STRIP, zorder=-2, linewidth=0.0)
+        axes.axhspan(start, end, **look)
         axes.text(0.995, math.sqrt(start * end), words, transform=axes.get_yaxis_transform(),
-                  ha="right", va="center", fontsize=8, color="#666666")  # fmt: skip
+                  ha="right", va="center", **letters)  # fmt: skip
     else:
-        axes.axvspan(start, end, color=STRIP, zorder=-2, linewidth=0.0)
+        axes.axvspan(start, end, **look)
         axes.text(math.sqrt(start * end), 1.0, words, transform=axes.get_xaxis_transform(),
-                  ha="center", va="bottom", fontsize=8, color="#666666")  # fmt: skip
+                  ha="center", va="bottom", **letters)  # fmt: skip
 
 
 def cells(
     axes: Axes, values: ArrayLike, low: float, high: float, columns: Sequence[str] = ()
 ) -> Any:
-    """Paint a matrix of errors, the first row above; what has none stays white.
+    """Paint a matrix of errors of either sign, the first row above; what has none stays white.
 
-    Parameters
-    ----------
-    axes : Axes
-    values : array_like, shape (m, n)
-        Relative errors of either sign; nan and inf are none.
-    low, high : float
-        Errors, positive, at the two ends of the colours; what is beyond has the colour of the end.
-    columns : sequence of str, optional
-        Names of the n columns, written above them.
-
-    Returns
-    -------
-    AxesImage
-        For a colour bar.
+    `low` and `high` are the errors at the ends of the colours; the names of the columns are written
+    above them. Return the image, for a colour bar.
     """
     found = np.asarray(values, np.float64)
-    shown = axes.imshow(np.ma.masked_invalid(np.abs(found)), aspect="auto", cmap=ERRORS,
+    image = axes.imshow(np.ma.masked_invalid(np.abs(found)), aspect="auto", cmap=ERRORS,
                         interpolation="nearest", norm=LogNorm(low, high, clip=True))  # fmt: skip
     if columns:
         axes.set_xticks(range(len(columns)), columns)
         axes.xaxis.tick_top()
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
-    return shown
+    return image
 
 
 def dot(name: str, marker: str, color: ColorType = "#555555", **look: Any) -> Line2D:
-    """Return what stands in a key for a marker.
-
-    Parameters
-    ----------
-    name : str
-    marker, color
-        As matplotlib knows them.
-    **look
-        Further properties of `Line2D`.
-    """
+    """Return what stands in a key for a marker."""
     return Line2D([], [], linestyle="none", marker=marker, color=color, label=name, **look)
 
 
@@ -190,18 +123,6 @@ def preset_dots(presets: Iterable[str]) -> list[Line2D]:
 
 
 def key(drawing: Figure, handles: Sequence[Any], across: int = 6, **look: Any) -> None:
-    """Write a key below all panels.
-
-    Parameters
-    ----------
-    drawing : Figure
-        With a constrained layout, which leaves room for it.
-    handles : sequence of Artist
-        With labels, as from `dot`.
-    across : int, optional
-        How many stand side by side.
-    **look
-        Further options of `Figure.legend`; by default no frame, letters of 9 points.
-    """
+    """Write a key of labelled artists below all panels, so many side by side."""
     drawing.legend(handles=list(handles), loc="outside lower center", ncols=across,
                    **{"frameon": False, "fontsize": 9, **look})  # fmt: skip

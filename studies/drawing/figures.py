@@ -19,10 +19,8 @@ from studies.drawing.styles import LOWEST, line_of, name_of, style_of
 from studies.kit.tables import draft
 
 OVERTURNED = "overturned"
-DPI = 130
-"""Points of a picture to the inch."""
-COLOURS = 256
-"""Of a picture, the nearest to those that it was drawn in."""
+DPI, COLOURS = 130, 256
+"""Points of a picture to the inch, and its colours, the nearest to those that it was drawn in."""
 
 
 def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -> Figure:
@@ -125,29 +123,14 @@ def lay_out(drawing: Figure) -> None:
 
 
 def save(drawing: Figure, path: Path) -> None:
-    """Write a figure in one piece, in the format of the file's suffix.
-
-    Parameters
-    ----------
-    drawing : Figure
-        Its size is in inches; points are DPI to the inch. Its layout is fixed by this.
-    path : Path
-        Ends in .png, with COLOURS colours, or in what else matplotlib writes.
-
-    Raises
-    ------
-    OSError
-        That names `path`.
-    ValueError
-        If there is no such format.
-    """
+    """Write a figure in one piece, in the format of the file's suffix; its layout is then fixed."""
     drawing.set_dpi(DPI)
     lay_out(drawing)
     with draft(path) as part, part.open("wb") as file:
-        if path.suffix != ".png":
+        if path.suffix == ".png":
+            write_points(drawing, file)
+        else:
             drawing.savefig(file, format=path.suffix[1:], dpi=DPI)
-            return
-        write_points(drawing, file)
 
 
 def write_points(drawing: Figure, file: BinaryIO) -> None:
@@ -162,19 +145,7 @@ def write_points(drawing: Figure, file: BinaryIO) -> None:
 
 
 def save_all(drawings: Mapping[str, Figure], folder: Path) -> list[Path]:
-    """Write the figures of a study under their names into its folder; return the files.
-
-    Parameters
-    ----------
-    drawings : mapping
-        Name of a file without suffix -> figure.
-    folder : Path
-
-    Returns
-    -------
-    list of Path
-        In the order of the figures.
-    """
+    """Write the figures of a study under their names into its folder; return the files."""
     paths = [folder / f"{name}.png" for name in drawings]
     for drawing, path in zip(drawings.values(), paths, strict=True):
         save(drawing, path)

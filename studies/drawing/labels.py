@@ -49,15 +49,8 @@ def spread(levels: Sequence[float], gap: float) -> FloatArray:
 def beside(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
     """Write names at the right of the axes, each level with its point or led to it by a line.
 
-    To be called when all is drawn: the limits of the axes stay what they are then.
-
-    Parameters
-    ----------
-    axes : Axes
-    names : sequence of Name
-        One whose point is not finite, of a source that failed, is left out.
-    size : float, optional
-        Of the letters [points].
+    To be called when all is drawn: the limits of the axes stay what they are then. A name whose
+    point is not finite is left out; the size of the letters is in points.
     """
     names = [name for name in names if math.isfinite(name.x) and math.isfinite(name.y)]
     if not names:
@@ -79,13 +72,7 @@ def beside(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
 def around(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
     """Write names near their points, clear of each other and of the lines and words there.
 
-    Parameters
-    ----------
-    axes : Axes
-        With all else drawn.
-    names : sequence of Name
-    size : float
-        Of the letters [points].
+    To be called when all is drawn.
     """
     if not names:
         return

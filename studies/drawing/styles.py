@@ -13,19 +13,7 @@ LOWEST = 1e-16
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How a source is drawn: its colour, and its line (models and solvers) or marker (engines).
-
-    Attributes
-    ----------
-    colour : str
-    line : str
-        Empty for sources that are drawn as points.
-    marker : str
-        Empty for sources that are drawn as lines.
-    width : float
-    fill : str
-        How much of the marker is filled.
-    """
+    """How a source is drawn: a model or solver as a line, an engine as markers."""
 
     colour: str
     line: str = ""
@@ -36,11 +24,8 @@ class Style:
     def points(self, size: float = 4.5) -> dict[str, Any]:
         """Return how its points are drawn, as arguments of `Axes.plot`."""
         return {
-            "color": self.colour,
-            "linestyle": "none",
-            "marker": self.marker or ".",
-            "markersize": size,
-            "fillstyle": self.fill if self.marker else "full",
+            **{"color": self.colour, "linestyle": "none", "markersize": size},
+            **{"marker": self.marker or ".", "fillstyle": self.fill if self.marker else "full"},
         }
 
 
@@ -53,6 +38,7 @@ STYLES = {
     "rk4": Style("#56B4E9", "-", width=1.0),
     "average-acceleration": Style("#E69F00", "--", width=1.0),
 }
+OTHER = Style("#777777", marker="D")
 
 # from Tol's muted palette, but for the first two; an engine has a marker of its own besides,
 # because no eleven colours stay apart for every reader; with 9 markers they make 99 looks
@@ -61,9 +47,6 @@ ENGINE_COLOURS = (
     *("#CC6677", "#117733", "#DDAA33"),
 )
 ENGINE_MARKERS = "o^sDvPXph"
-
-OTHER = Style("#777777", marker="D")
-"""Of a source without a style of its own."""
 
 
 def look_at(place: int) -> tuple[str, str]:
@@ -75,22 +58,20 @@ def look_at(place: int) -> tuple[str, str]:
 
 
 def engine_style(engine: str, preset: str) -> Style:
-    """Return colour and marker of an engine, by its place among all, and the preset's fill.
-
-    Parameters
-    ----------
-    engine : str
-        A name in `ENGINES`.
-    preset : str
-        Empty where the engine is named without one.
-
-    Raises
-    ------
-    ValueError
-        If there is no such engine.
-    """
+    """Return colour and marker of an engine, by its place among all, and the preset's fill."""
     colour, marker = look_at(list(ENGINES).index(engine))
     return Style(colour, marker=marker, fill=told(preset).fill)
+
+
+def style_of(source: str) -> Style:
+    """Return the style of a source; one without a style of its own is grey."""
+    plain, _, preset = source.partition(":")
+    return engine_style(plain, preset) if plain in ENGINES else STYLES.get(plain, OTHER)
+
+
+def line_of(source: str) -> str:
+    """Return the line of a source that is drawn as one: a model's own, or that of its preset."""
+    return style_of(source).line or told(source.partition(":")[2]).line
 
 
 def title_of(engine: str) -> str:
@@ -100,34 +81,18 @@ def title_of(engine: str) -> str:
 
 def engine_title(source: str) -> str:
     """Return the title of the engine that a source is a preset of."""
-    return title_of(source.partition(":")[0])
+    return title_of(engine_of(source))
 
 
 def name_of(source: str) -> str:
     """Return how a source is called in a picture: an engine by its title, with its preset."""
-    engine, colon, preset = source.partition(":")
-    return title_of(engine) + (f", {told(preset).short}" if colon else "")
+    _, colon, preset = source.partition(":")
+    return engine_title(source) + (f", {told(preset).short}" if colon else "")
 
 
 def full_name(source: str) -> str:
-    """Return the same for an engine's plain name, too, which stands for its best preset.
-
-    A model is called by its title.
-    """
+    """Return the same with the preset that a plain name stands for, or the title of a model."""
     if source in MODELS:
         return MODELS[source].title
     preset = preset_of(source)
     return name_of(f"{engine_of(source)}:{preset}") if preset else name_of(source)
-
-
-def style_of(source: str) -> Style:
-    """Return the style of a source; one without a style of its own is grey."""
-    plain, _, preset = source.partition(":")
-    if plain in ENGINES:
-        return engine_style(plain, preset)
-    return STYLES.get(plain, OTHER)
-
-
-def line_of(source: str) -> str:
-    """Return the line of a source that is drawn as one: a model's own, or that of its preset."""
-    return style_of(source).line or told(source.partition(":")[2]).line

@@ -14,8 +14,8 @@ from engines.declaration import AT_REST
 from studies.drawing.facets import STRIP, cells, dot, error_scale, key, preset_dots, rows
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import Style, engine_title, line_of, name_of, style_of, title_of
-from studies.measures.presets import in_order, is_engine, preset_of, told
 from studies.kit.say import out_of, part
+from studies.measures.presets import in_order, is_engine, preset_of, told
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wrong_in
 
 OVERTURNED = "overturned"

@@ -11,20 +11,12 @@ from studies.sources.registry import resolve
 Fill = Literal["none", "left", "bottom", "full"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Told:
-    """How a preset is told of.
+    """How a preset is told of: in a sentence about engines that have it, and in a picture.
 
-    Attributes
-    ----------
-    words : str
-        What it is, as part of a sentence about engines that have it.
-    short : str
-        After the name of an engine.
-    colour : str
-        Where presets are compared, and the engines are named.
-    line, fill : str
-        Where an engine is drawn as a line, and how much of its marker is filled.
+    `short` stands after the name of an engine; `line` and `fill` are of an engine's line and
+    marker.
     """
 
     words: str
@@ -35,54 +27,23 @@ class Told:
 
 
 PRESETS = {
-    "naive": Told(
-        words="as their documentation shows them",
-        short="as documented",
-        colour="#D55E00",
-        line=":",
-        fill="full",
-    ),
-    AT_REST: Told(
-        words="as documented but on a base at rest",
-        short="base at rest",
-        colour="#E69F00",
-        line=":",
-    ),
+    "naive": Told("as their documentation shows them", "as documented", "#D55E00", ":", "full"),
+    AT_REST: Told("as documented but on a base at rest", "base at rest", "#E69F00", ":"),
     RECOMMENDED: Told(
-        words="as their documentation recommends",
-        short="as recommended",
-        colour="#56B4E9",
-        line="-.",
-        fill="bottom",
+        "as their documentation recommends", "as recommended", "#56B4E9", "-.", "bottom"
     ),
-    "fixed": Told(
-        words="with a tuned contact and a fixed step",
-        short="fixed step",
-        colour="#0072B2",
-        line="--",
-        fill="left",
-    ),
+    "fixed": Told("with a tuned contact and a fixed step", "fixed step", "#0072B2", "--", "left"),
     "error-controlled": Told(
-        words="with the engine's own error-controlled steps",
-        short="its own steps",
-        colour="#CC79A7",
-        line="-.",
-        fill="bottom",
+        "with the engine's own error-controlled steps", "its own steps", "#CC79A7", "-.", "bottom"
     ),
-    "landing": Told(
-        words="with steps that land on impacts",
-        short="landing steps",
-        colour="#009E73",
-    ),
+    "landing": Told("with steps that land on impacts", "landing steps", "#009E73"),
 }
 """Preset -> how it is told of, from the libraries' own to the best there is."""
 
 
 def told(preset: str) -> Told:
     """Return how a preset is told of; one of another package by its name, in grey."""
-    if preset in PRESETS:
-        return PRESETS[preset]
-    return Told(words=f"with the preset {preset}", short=preset)
+    return PRESETS.get(preset) or Told(f"with the preset {preset}", preset)
 
 
 def is_engine(source: str) -> bool:
