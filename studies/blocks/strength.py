@@ -7,128 +7,72 @@ further up does so at points of the grid.
 """
 
 import math
-import time
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from itertools import groupby
+from typing import NamedTuple
 
 from analytic.block import RigidBlock
 from analytic.conditioning import scaled
 from analytic.record import Record
 from analytic.response import Outcome
 from analytic.simulate import simulate, strongest
-from studies.old.provenance import usable_cores
+from studies.kit.store import usable_cores
 
 APART = 0.01
 """Relative distance of two factors; of a block that starts off rest, up to the onset, over it."""
-MOST_ONSETS = 100.0
-"""Over the factor that lifts a block: the largest that is tried."""
-BEYOND = 1.25
-"""Over the first factor that overturns: how far survival is looked for."""
+MOST_ONSETS, BEYOND = 100.0, 1.25
+"""Over the onset: the largest factor tried. Over the margin: how far survival is looked for."""
 WIDTH = 1e-6
-"""Relative width to which the first edge is known."""
-AT_ONCE = 4
-"""Factors that each core tries before the next are."""
+"""Relative width to which the margin is known."""
+AT_ONCE = 32
+"""Factors that are tried before the next are."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Strength:
-    """Factors on a motion.
+class Strength(NamedTuple):
+    """Factors on a motion: those that lift and overturn, and where the block survives again.
 
-    Attributes
-    ----------
-    lifts : float
-        At which the block leaves its base; 0 if it starts off rest.
-    margin : float
-        The least that was found to overturn it, to 1e-6 of it, from above; inf if none up to
-        MOST_ONSETS onsets does.
-    friction : float
-        That the exact solution needs at the margin, or at the largest factor tried if it is inf.
-    islands : tuple of (float, float)
-        Between which points of the grid the block survives again, up to BEYOND times the margin.
+    The margin is inf where none up to MOST_ONSETS onsets overturns; friction is what the exact
+    solution needs there. Islands are in words: "1.02-1.04 1.2".
     """
 
     lifts: float
     margin: float
     friction: float
-    islands: tuple[tuple[float, float], ...] = ()
+    islands: str
 
 
-class UndecidedError(Exception):
-    """Why a search finds no margin."""
-
-
-def strength(
-    block: RigidBlock,
-    motion: Record,
-    start: tuple[float, float],
-    limit_s: float = math.inf,
-    tell: Callable[[int], object] = abs,
-) -> Strength:
-    """Find by which factors on a motion the exact block overturns.
-
-    Parameters
-    ----------
-    block : RigidBlock
-    motion : Record
-        As it is at the factor 1.
-    start : (float, float)
-        Rotation [rad] and angular velocity [rad/s] at time 0, the same for all factors.
-    limit_s : float, optional
-        Wall-clock time [s] after which no further factor is tried.
-    tell : callable, optional
-        Called with the number of factors tried since it was called before.
-
-    Raises
-    ------
-    UndecidedError
-        If the time is up, or a solution failed.
-    ValueError
-        If the start is none (`analytic.start.folded` says which), or nothing moves.
-    """
-    peak = strongest(motion)
-    if peak == 0.0:
-        raise ValueError("the motion is zero throughout; no factor makes it stronger")
+def strength(block: RigidBlock, motion: Record, start: tuple[float, float]) -> Strength:
+    """Find by which factors on a motion the exact block overturns; RuntimeError if one fails."""
     solve = scaled(block, motion, start=start)
-    end = time.monotonic() + limit_s
 
-    def outcome(factor: float) -> Outcome:
-        if time.monotonic() > end:
-            raise UndecidedError(f"no margin within the time limit of {limit_s:g} s")
-        found = solve(factor, 1.0)[1]
-        if found is Outcome.FAILED:
-            raise UndecidedError(f"no margin: the solution at the factor {factor:g} failed")
-        return found
+    def falls(factor: float) -> bool:
+        outcome = solve(factor, 1.0)[1]
+        if outcome is Outcome.FAILED:
+            raise RuntimeError(f"no margin: the solution at the factor {factor:g} failed")
+        return outcome is Outcome.OVERTURNED
 
-    at_rest = start == (0.0, 0.0)
-    onset = math.tan(block.alpha) * block.gravity / peak
-    lifts = onset if at_rest else 0.0
-    factors = grid(onset, at_rest)
-    found: list[Outcome] = []
-    cores = usable_cores()
+    def needed(factor: float) -> float:
+        return simulate(block, motion.scaled(factor), start=start).friction_needed
 
-    def look(begin: int) -> list[Outcome]:
-        return [outcome(factor) for factor in factors[begin : begin + AT_ONCE]]
-
-    with ThreadPoolExecutor(cores) as pool:
-        while not enough(factors, found):
-            begins = range(len(found), len(found) + cores * AT_ONCE, AT_ONCE)
-            for outcomes in pool.map(look, begins):
-                found += outcomes
-                tell(len(outcomes))
-    if Outcome.OVERTURNED not in found:
-        needs = simulate(block, motion.scaled(factors[-1]), start=start).friction_needed
-        return Strength(lifts=lifts, margin=math.inf, friction=needs)
-    first = found.index(Outcome.OVERTURNED)
+    onset, at_rest = math.tan(block.alpha) * block.gravity / strongest(motion), start == (0.0, 0.0)
+    lifts, factors, found = onset if at_rest else 0.0, grid(onset, at_rest), list[bool]()
+    with ThreadPoolExecutor(usable_cores()) as pool:
+        while len(found) < len(factors):
+            found += pool.map(falls, factors[len(found) : len(found) + AT_ONCE])
+            if True in found and factors[len(found) - 1] >= BEYOND * factors[found.index(True)]:
+                break
+    if True not in found:
+        return Strength(lifts, math.inf, needed(factors[-1]), "")
+    first = found.index(True)
     low, high = factors[first - 1] if first else lifts, factors[first]
     while high - low > WIDTH * high:
         middle = 0.5 * (low + high)
-        falls = outcome(middle) is Outcome.OVERTURNED
-        low, high = (low, middle) if falls else (middle, high)
-    needs = simulate(block, motion.scaled(high), start=start).friction_needed
-    again = islands(factors[first:], found[first:])
-    return Strength(lifts=lifts, margin=high, friction=needs, islands=again)
+        low, high = (low, middle) if falls(middle) else (middle, high)
+    tried = [*zip(factors, found, strict=False)][first:]
+    near = [pair for pair in tried if pair[0] <= BEYOND * factors[first]]
+    runs = [[*run] for fell, run in groupby(near, key=lambda pair: pair[1]) if not fell]
+    ends = (dict.fromkeys(f"{run[end][0]:.4g}" for end in (0, -1)) for run in runs)
+    return Strength(lifts, high, needed(high), " ".join(map("-".join, ends)))
 
 
 def grid(onset: float, at_rest: bool) -> list[float]:
@@ -137,23 +81,3 @@ def grid(onset: float, at_rest: bool) -> list[float]:
     above = [onset * (1.0 + APART) ** n for n in range(1, count + 1)]
     below = [] if at_rest else [onset * APART * n for n in range(round(1.0 / APART) + 1)]
     return below + above
-
-
-def enough(factors: list[float], found: list[Outcome]) -> bool:
-    """Tell whether a block overturns at one of the factors tried, and at those beyond was asked."""
-    if len(found) == len(factors):
-        return True
-    if Outcome.OVERTURNED not in found:
-        return False
-    return factors[len(found) - 1] >= BEYOND * factors[found.index(Outcome.OVERTURNED)]
-
-
-def islands(factors: list[float], found: list[Outcome]) -> tuple[tuple[float, float], ...]:
-    """Return from which factor to which a block survives, each time that it does so."""
-    pairs = zip(factors, found, strict=False)
-    runs = [
-        [factor for factor, _ in run]
-        for falls, run in groupby(pairs, key=lambda pair: pair[1] is Outcome.OVERTURNED)
-        if not falls
-    ]
-    return tuple((run[0], run[-1]) for run in runs)

@@ -46,6 +46,8 @@ from studies.kit.tables import (
 )
 
 ROWS, PROVENANCE = "rows.sqlite", "provenance.json"
+NAMES = ("name", "record")
+"""Labels by which a user knows a case."""
 
 
 class FolderError(BadInputError):
@@ -298,13 +300,18 @@ def _said(row: Row, labels: Iterable[str]) -> str:
 
 
 def _unasked(row: Row, asked: Sequence[Row]) -> str:
-    """Say what of a row is not asked for: its first label of another value, or its settings."""
-    labels = list(asked[0]) if asked else ["source"]
-    if not row.keys() >= set(labels):
-        return "other options; use a new folder"
-    for name in labels:
-        if row[name] not in [each.get(name) for each in asked]:
-            return f"{name} {row[name]}, which must be named too; or use a new folder"
+    """Say what of a row is not asked for, beside the most like of what is: a label, or settings."""
+    labels = [*dict.fromkeys(name for each in asked for name in each)] or ["source"]
+    nearest = max(
+        asked, key=lambda each: sum(each.get(name) == row.get(name) for name in labels), default={}
+    )
+    for label in labels:
+        if (there := row.get(label)) != (here := nearest.get(label)):
+            if label not in row:
+                return "other options; use a new folder"
+            of = _said(row, [name for name in NAMES if name in labels[: labels.index(label)]])
+            words = f"{of} with {label} {there}, here {here}" if of else f"{label} {there}"
+            return f"{words}; name that, too, or use a new folder"
     return f"other settings ({_said(row, labels)}); use a new folder"
 
 

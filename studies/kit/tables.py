@@ -88,11 +88,13 @@ def read_table(path: Path, *words: str) -> pd.DataFrame:
     path : Path
         A blank file is a table without columns.
     *words : str
-        Columns of words that may look like numbers, besides message.
+        Columns of words that may look like numbers, or like none, besides message.
     """
     texts = dict.fromkeys(("message", *words), str)
     try:
-        table = pd.read_csv(path, keep_default_na=False, na_values=["nan"], dtype=texts)
+        heads = [str(name) for name in pd.read_csv(path, nrows=0)]
+        missing = {name: ["nan"] for name in heads if name not in words}
+        table = pd.read_csv(path, keep_default_na=False, na_values=missing, dtype=texts)
     except pd.errors.EmptyDataError:
         return pd.DataFrame()
     return table.assign(**{name: table[name].map(unquoted) for name in _words(table)})

@@ -1,0 +1,428 @@
+"""Scenes beyond one block: a frame, a slide and a moving floor, beside their exact solutions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from dataclasses import fields
+from functools import cache
+from itertools import product
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+import pandas as pd
+
+from analytic import Delayed, Record, RigidBlock, RockingFrame, SinePulse, SlidingBlock, Still
+from analytic.block import GRAVITY
+from analytic.motion import Motion
+from analytic.response import Outcome, Reason, Response
+from analytic.simulate import simulate
+from engines import Scene
+from engines.declaration import Stepping
+from engines.layouts import System
+from engines.parts.factors import DEFAULT
+from engines.run.drive import LAG, Stepper, build
+from engines.run.monitor import Monitor
+from studies.kit.jobs import Job, Question, Row, ask, summary
+from studies.kit.say import listed, part
+from studies.kit.study import Study, Tables
+from studies.measures.presets import engine_of, in_order, is_engine, preset_of
+from studies.measures.wrongness import counted, kinds_of, outcomes_of
+from studies.sources.registry import Source, core_sources, resolve
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FRAME, BLOCK = RockingFrame(width=0.5, height=1.5, load=2.0), RigidBlock(width=0.5, height=1.5)
+PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
+"""Amplitude [g] and circular frequency [rad/s] of full sines."""
+LOADS, COLUMNS = (0.5, 2.0, 4.0), (2, 3)
+EXTREMES = ((2, 1e-3), (2, 0.1), (2, 10.0), (2, 1e3), (5, 2.0))
+"""Columns and load of frames that are shown by themselves, under the first pulse."""
+PHASES = 4
+"""Where in a step an impact falls costs per mille: so many runs at steps that differ by a hair."""
+REFINED = (4.0, 2.0, 0.5)
+"""Steps over an engine's own, for the frame of two columns with a load of 2 under a pulse."""
+FRICTIONS = (0.1, 0.2, 0.3)
+RIDE = SinePulse(amplitude=1.0, omega=2.0 * math.pi, half_cycles=4)
+"""Of a floor, which a block with a friction of 1 rides over 0.32 m."""
+RESTS_S = (0.0, 1.0)
+"""For how long all is at rest before a floor moves [s]."""
+HELD_S = 2.0
+"""How long a base is accelerated by less than what friction holds [s]."""
+
+SHARED = ("outcome", "peak_ratio", "impacts", "steps", "wall_s", "message", "reason")
+SEEN = {"frame": ("parting", "tilt", "drift_m"), "slide": ("place_m", "lift_m", "turn_rad")}
+"""What an engine shows of a scene besides."""
+LABELS = {
+    "frame": ("columns", "load", "amplitude_g", "omega", "refined", "extreme", "phase"),
+    "slide": ("case",),
+    "floor": ("floor", "rest_s"),
+    "block": ("amplitude_g", "omega", "half_cycles"),
+}
+MEASURED = {
+    "frame": ("exact", "right", "error", *SEEN["frame"]),
+    "slide": ("slips", "exact_slips", "slip_error_m", *SEEN["slide"]),
+    "floor": ("carried", LAG),
+    "block": ("exact", "own_exact", "error", "own_error", LAG),
+}
+"""Scene -> the columns of its table before source, and after what all have."""
+FLOOR = ["engine", "floor", "carried", "carried_after_rest", LAG]
+WHOLE = ("columns", "phase", "slips", "exact_slips", "half_cycles")
+TYPES = {**dict.fromkeys(WHOLE, int), "extreme": bool, "right": bool}
+"""Of columns that hold no other numbers or words."""
+
+
+def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
+    """Return the job of every case and source: of frames first."""
+    asked = [(name, resolve(name)) for name in sources]
+    beyond = [*_slides(asked, quick), *_floors(asked), *_blocks(asked, quick)]
+    return [*_frames(asked, quick), *beyond]
+
+
+Asked = Sequence[tuple[str, Source]]
+
+
+def _job(scene: str, labels: Row, question: Question, source: str, **options: Any) -> Job:
+    return Job(labels={"scene": scene, **labels}, case=question, source=source, options=options)
+
+
+def _frames(sources: Asked, quick: bool) -> Iterator[Job]:
+    """Yield the usual frames, the extreme ones, and one in other steps than an engine's own."""
+    usual = [(2, 2.0)] if quick else [(columns, load) for load, columns in product(LOADS, COLUMNS)]
+    posed = [(*frame, *pulse, 1.0, False)
+             for frame, pulse in product(usual, PULSES[: 1 if quick else None])]  # fmt: skip
+    if not quick:
+        posed += [(*frame, *PULSES[0], 1.0, True) for frame in EXTREMES]
+        posed += [(2, 2.0, *PULSES[0], refined, False) for refined in REFINED]
+    for columns, load, amplitude_g, omega, refined, extreme in posed:
+        frame = RockingFrame(width=0.5, height=1.5, columns=columns, load=load)
+        pulse = SinePulse.in_g(amplitude_g, omega=omega, half_cycles=2)
+        for name, source in sources:
+            for phase, options in _steps(source, frame, pulse, 2 if quick else PHASES, refined):
+                values = columns, load, amplitude_g, omega, refined, extreme, phase
+                labels = dict(zip(LABELS["frame"], values, strict=True))
+                yield _job("frame", labels, Question(system=frame, motion=pulse), name, **options)
+
+
+def _steps(
+    source: Source, frame: RockingFrame, pulse: SinePulse, phases: int, refined: float
+) -> Iterator[tuple[int, Row]]:
+    """Yield steps by which the first impact falls into different parts of equal ones.
+
+    With n = t/dt steps before an impact at t, a step of dt (1 + k/(N n)) has it the part k/N of a
+    step earlier, for k = 0, 1, ..., N - 1. A source without equal steps is asked once, at its own.
+    """
+    used = source.used if source.engine else None
+    if used is None or used.stepping is not Stepping.FIXED:
+        if refined == 1.0:
+            yield 0, {}
+        return
+    step = used.step if math.isfinite(used.step) else used.step_s * frame.p
+    impact = exact_of(frame, pulse).impacts[0].time * frame.p
+    for phase in range(phases):
+        yield phase, {"step": refined * (step * (1.0 + phase / phases * step / impact))}
+
+
+def _slides(sources: Asked, quick: bool) -> Iterator[Job]:
+    """Yield the blocks that slide; steps that land on impacts are not asked."""
+    sine = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
+    cube = SlidingBlock(width=1.0, height=1.0, friction=0.5)
+    below = Record(dt=HELD_S, samples=np.full(2, 0.9 * 0.2 * GRAVITY))
+    cases = {
+        f"sine, friction {friction:g}": Question(system=_flat(friction), motion=sine)
+        for friction in (FRICTIONS[1:2] if quick else FRICTIONS)
+    }
+    cases["launched at 6 m/s, friction 0.5"] = Question(
+        system=cube, motion=Still(), start=(0.0, 6.0)
+    )
+    cases["held at 0.9 of friction 0.2"] = Question(system=_flat(0.2), motion=below)
+    for (case, question), (name, source) in product(cases.items(), sources):
+        if not source.lands:
+            yield _job("slide", {"case": case}, question, name)
+
+
+def _flat(friction: float) -> SlidingBlock:
+    return SlidingBlock(width=1.0, height=0.5, friction=friction)
+
+
+def _floors(sources: Asked) -> Iterator[Job]:
+    """Yield a block on a floor that moves, as documented but in every way that an engine has."""
+    for name, source in sources:
+        if not (source.engine and source.preset == DEFAULT and source.used.frame == "world"):
+            continue
+        known = {each.name: each.metadata for each in fields(cast(Any, source.used.settings))}
+        for floor, rest_s in product(known["floor"]["allowed"].names, RESTS_S):
+            motion = Delayed(RIDE, rest_s) if rest_s else RIDE
+            question = Question(system=_flat(1.0), motion=motion)
+            labels = {"floor": floor, "rest_s": rest_s}
+            yield _job("floor", labels, question, name, settings={"floor": floor})
+
+
+def _blocks(sources: Asked, quick: bool) -> Iterator[Job]:
+    """Yield a block that rocks on a floor which engines move as documented."""
+    for (amplitude_g, omega), half_cycles in product(PULSES[: 1 if quick else None], (1, 2)):
+        pulse = SinePulse.in_g(amplitude_g, omega=omega, half_cycles=half_cycles)
+        labels = {"amplitude_g": amplitude_g, "omega": omega, "half_cycles": half_cycles}
+        for name, source in sources:
+            if source.engine and source.used.frame == "world":
+                yield _job("block", labels, Question(system=BLOCK, motion=pulse), name)
+
+
+@cache  # one for all sources
+def exact_of(system: System, motion: Hashable, start: tuple[float, float] = (0.0, 0.0)) -> Response:
+    """Return the exact response."""
+    return simulate(system, cast(Motion, motion), start=start)
+
+
+def measure(job: Job) -> Row:
+    """Return the summary, and how far the response is from the exact one of its scene.
+
+    Errors of peaks are relative, those of slips and places in metres, and nan where there is none.
+    """
+    response, case, scene = ask(job), job.case, str(job.labels["scene"])
+    exact = exact_of(cast(Hashable, case.system), cast(Hashable, case.motion), case.start)
+    row = {**summary(response), "reason": response.reason.name if response.reason else ""}
+    seen = {name: float(response.observables.get(name, math.nan)) for name in SEEN.get(scene, ())}
+    if scene == "frame":
+        right, error = response.outcome is exact.outcome, _off(response, exact)
+        return {**row, "exact": exact.peak_ratio, "right": right, "error": error, **seen}
+    if scene == "slide":
+        slips = {"slips": len(response.slips), "exact_slips": len(exact.slips)}
+        return {**row, **slips, "slip_error_m": _slip_error(response, exact), **seen}
+    lag = float(response.observables.get(LAG, math.nan))
+    if scene == "floor":
+        travel = float(case.motion.displacement(case.motion.duration))
+        place = float(response.observables.get("place_m", math.nan))
+        return {**row, "carried": 1.0 + place / travel, LAG: lag}
+    failed = response.outcome is Outcome.FAILED  # what has failed once is not built again
+    own = response if failed else exact_on_its_floor(job.asked, BLOCK, case.motion)
+    peaks = {"exact": exact.peak_ratio, "own_exact": own.peak_ratio}
+    errors = {"error": _off(response, exact), "own_error": _off(response, own)}
+    return {**row, **peaks, **errors, LAG: lag}
+
+
+def _off(response: Response, exact: Response) -> float:
+    both = response.outcome is Outcome.ROCKED is exact.outcome
+    return response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
+
+
+def _slip_error(response: Response, exact: Response) -> float:
+    """Return the largest error of a slip [m]; of a block that is held, how far it crept.
+
+    Where there are more slips than there should be, the longest count; nan where there are fewer.
+    """
+    if response.outcome is Outcome.FAILED or len(response.slips) < len(exact.slips):
+        return math.nan
+    if not exact.slips:
+        return abs(float(response.observables.get("place_m", math.nan)))
+    least = sorted(map(abs, response.slips))[-len(exact.slips)]
+    longest = [slip for slip in response.slips if abs(slip) >= least]
+    return max(abs(one - other) for one, other in zip(longest, exact.slips, strict=True))
+
+
+def exact_on_its_floor(source: Source, block: RigidBlock, motion: Motion) -> Response:
+    """Return the exact response to the motion that an engine's floor made under a block.
+
+    It is that to the second differences of the floor's places, joined by straight lines; a floor
+    that says nowhere where it is, is where it should be.
+    """
+    declared, used = source.declared, source.used
+    scene = used.posed(Scene(system=block, motion=motion, preset=used.name, compiled=False))
+    world, dt_s = build(declared, scene), used.ordinary_step_s(scene)
+    try:
+        if not hasattr(world, "base_x_m"):
+            return simulate(block, motion)
+        monitor = Monitor(scene, dt_s, used.stepping, world.moment, declared.resolution(block))
+        walk, places = Stepper(monitor, world, used.stepping), [0.0, 0.0]
+        while walk.go(1):
+            places.append(float(world.base_x_m))
+    finally:
+        world.close()
+    return simulate(block, Record(samples=np.diff(places, 2) / dt_s**2, dt=dt_s))
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return the rows of each scene, and a line for each source that is built for it."""
+    parts = {}
+    for scene, labels in LABELS.items():
+        columns = ["scene", *labels, "source", *SHARED, *MEASURED[scene]]
+        mine = rows[rows["scene"] == scene].reindex(columns=columns)
+        parts[scene] = mine.astype({name: TYPES[name] for name in columns if name in TYPES})
+    frame, slide = (built(parts[scene]) for scene in ("frame", "slide"))
+    usual = frame[(frame["refined"] == 1.0) & ~frame["extreme"]]
+    first = (frame[["columns", "load", "amplitude_g"]] == (2, 2.0, PULSES[0][0])).all(axis=1)
+    refined = frame[first].sort_values("refined", kind="stable")
+    floors = _lines(parts["floor"], _of_floors, "floor")
+    return {
+        **parts,
+        "frame-summary": _lines(usual, _of_frames),
+        "frame-extremes": _lines(frame[frame["extreme"]], _of_extremes, "columns", "load"),
+        "frame-steps": _lines(refined, _of_steps, "refined"),
+        "slide-summary": _lines(slide, _of_slides),
+        "floor-summary": floors.reindex(columns=FLOOR),
+        "block-summary": _lines(parts["block"], _of_blocks),
+    }
+
+
+def built(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of what an engine is built for."""
+    return rows[rows["reason"] != Reason.UNAVAILABLE.name]
+
+
+def _lines(rows: pd.DataFrame, line: Callable[[pd.DataFrame], Row], *labels: str) -> pd.DataFrame:
+    """Return a line for each source, or for each of its rows that have some labels alike."""
+    order, keys = [*rows.sort_index()["source"].unique()], ["source", *labels]
+    groups = [group for _, group in rows.groupby(keys, sort=False)]
+    found = [{**group[keys].iloc[0].to_dict(), **line(group)} for group in groups]
+    return pd.DataFrame(sorted(found, key=lambda each: order.index(each["source"])))
+
+
+def _errors(rows: pd.DataFrame) -> Row:
+    size = rows["error"].abs()
+    return {"median_error": size.median(), "largest_error": size.max()}
+
+
+def _of_frames(rows: pd.DataFrame) -> Row:
+    return {
+        **{"frames": len(rows), "wrong": int((~rows["right"]).sum())},
+        **_errors(rows),
+        "beyond_2_percent": int((rows["error"].abs() > 0.02).sum()),
+        **{name: rows[name].max() for name in SEEN["frame"]},
+        "ms_a_frame": 1e3 * rows["wall_s"].mean(),
+    }
+
+
+def _of_steps(rows: pd.DataFrame) -> Row:
+    line = {name: _of_frames(rows)[name] for name in ("frames", "wrong")}
+    steps = max(int(rows["steps"].sum()), 1)
+    return {**line, **_errors(rows), "us_a_step": float(1e6 * rows["wall_s"].sum() / steps)}
+
+
+def _of_extremes(rows: pd.DataFrame) -> Row:
+    kinds = pd.Series(kinds_of(rows["outcome"], outcomes_of(rows["exact"])))
+    line = {"frames": len(rows), **counted(kinds), **_errors(rows)}
+    return {**line, "parting": rows["parting"].max()}
+
+
+def _of_slides(rows: pd.DataFrame) -> Row:
+    slides, held = rows["exact_slips"] > 0, rows["exact_slips"] == 0
+    kept = held & (rows["outcome"] == Outcome.AT_REST.value)
+    return {
+        "slides": len(rows),
+        "wrong": int((rows["slip_error_m"].isna() & ~kept).sum()),
+        "largest_slip_error_m": rows.loc[slides, "slip_error_m"].max(),
+        "creep_m": rows.loc[held, "slip_error_m"].max(),
+        "lift_m": rows["lift_m"].max(),
+        "ms_a_slide": 1e3 * rows["wall_s"].mean(),
+    }
+
+
+def _of_floors(rows: pd.DataFrame) -> Row:
+    rested = rows["rest_s"] > 0.0
+    return {
+        "engine": engine_of(str(rows["source"].iloc[0])),
+        "carried": rows.loc[~rested, "carried"].max(),
+        "carried_after_rest": rows.loc[rested, "carried"].max(),
+        LAG: rows[LAG].max(),
+    }
+
+
+def _of_blocks(rows: pd.DataFrame) -> Row:
+    medians = {f"median_{name}": rows[name].abs().median() for name in ("error", "own_error")}
+    return {"blocks": len(rows), **medians, LAG: rows[LAG].max()}
+
+
+def finding(tables: Tables) -> str:
+    """Say how far off the engines are on frames and slides, each with its best preset."""
+    frames, slides = (_best(tables[f"{scene}-summary"]) for scene in ("frame", "slide"))
+    claims = []
+    if len(frames):
+        claims.append(f"the peaks of rocking frames within {part(frames['largest_error'].max())}")
+    if len(slides):
+        claims.append(f"slips within {1e3 * slides['largest_slip_error_m'].max():.2g} mm")
+    if not claims:
+        return "No engine that was asked is built for these scenes."
+    if wrong := int(sum(lines["wrong"].sum() for lines in (frames, slides) if len(lines))):
+        claims.append(f"{wrong} outcomes wrong")
+    return f"The engines, each with its best preset, predict {listed(claims)}."
+
+
+def _best(lines: pd.DataFrame) -> pd.DataFrame:
+    """Return the lines of the last, which is the best, of each engine's presets."""
+    lines = _engines_in(lines)
+    if lines.empty:
+        return lines
+    presets = lines["source"].map(preset_of)
+    places = presets.map(in_order(presets).index)
+    return lines.loc[places.groupby(lines["source"].map(engine_of), sort=False).idxmax()]
+
+
+def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+    """Return the line of each source and scene."""
+    return {
+        "Rocking frames": tables["frame-summary"],
+        "Sliding blocks": tables["slide-summary"],
+        "How much of a floor's way it carries a block": tables["floor-summary"],
+        "Blocks on a moving floor, beside the exact peak on the floor as it should move, and as it "
+        "moved": tables["block-summary"],
+    }
+
+
+def figures(tables: Tables) -> Mapping[str, Figure]:
+    """Draw a frame and a slide, errors against run times, and what floors carry."""
+    from studies.drawing.block import draw_scene
+    from studies.drawing.scenes import draw_floors, draw_times
+
+    frames = _engines_in(tables["frame-summary"]).rename(columns={"ms_a_frame": "ms"})
+    slides = _engines_in(tables["slide-summary"]).rename(columns={"ms_a_slide": "ms"})
+    drawn = {"frame-scene": draw_scene(FRAME, 0.12), "slide-scene": draw_scene(_flat(0.2), 0.3)}
+    if len(frames):
+        along = "error of the largest rotation, relative  [–]"
+        drawn["frame-time"] = draw_times(frames, "Rocking frames", along)
+    if len(slides):
+        size = tables["slide"].groupby("source")["slip_error_m"]
+        for name, known in (("median_error", size.median()), ("largest_error", size.max())):
+            slides[name] = slides["source"].map(known)
+        drawn["slide-time"] = draw_times(slides, "Sliding blocks", "error of a slip  [m]")
+    floors = tables["floor-summary"]
+    return drawn | ({"floor": draw_floors(floors)} if len(floors) else {})
+
+
+def _engines_in(lines: pd.DataFrame) -> pd.DataFrame:
+    return lines[np.array([is_engine(name) for name in lines.get("source", ())], bool)]
+
+
+STUDY = Study(
+    name="scenes",
+    question="Does it hold for frames, friction alone, moving floors?",
+    help="""A frame, a slide, a moving floor, beside their exact solutions.
+
+The frame is a beam on two or three free columns, which turn as a block of another size and
+restitution does, and once on five, or much lighter or heavier than they are; the slide is friction
+alone: two slips under a pulse, a launch, and a hold below the onset; the floor is moved in each way
+that an engine has, and should carry a block along; a block that rocks on it is compared with the
+exact solution on the floor as it should move, and as it moved. Steps that land on impacts are asked
+about frames alone. What an engine is not built for is a row that says so. Twelve minutes.""",
+    sources=core_sources("naive", "fixed", "landing"),
+    quick="One frame, one slide, and two places of the steps.",
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    needed=lambda rows: [row for row in rows if row["reason"] != Reason.UNAVAILABLE.name],
+    captions={
+        "frame-scene": "A rocking frame: two columns that lean to the right about their right "
+        "corners, and on their tops a beam that stays level; dashed, where they stand at rest.",
+        "slide-scene": "A sliding block on its base, to the right of where it began, which is "
+        "dashed; it stays flat, and only friction holds it.",
+        "frame-time": "For each engine and preset a line from the median to the largest error of a "
+        "frame's peak, at the run time of a case; beside the name the number of wrong outcomes.",
+        "slide-time": "The same of the slips of sliding blocks.",
+        "floor": "How far a floor carries a block of what it should, for each engine and each way "
+        "of moving the floor, when it moves at once and when it moves after a second of rest.",
+    },
+)
+command = STUDY.command()
