@@ -251,7 +251,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
         parts[scene] = mine.astype({name: TYPES[name] for name in columns if name in TYPES})
     frame, slide = (built(parts[scene]) for scene in ("frame", "slide"))
     usual = frame[(frame["refined"] == 1.0) & ~frame["extreme"]]
-    first = (frame[["columns", "load", "amplitude_g"]] == (2, 2.0, PULSES[0][0])).all(axis=1)
+    first = (frame[["columns", "load", "amplitude_g"]] == [2, 2.0, PULSES[0][0]]).all(axis=1)
     refined = frame[first].sort_values("refined", kind="stable")
     floors = _lines(parts["floor"], _of_floors, "floor")
     return {
@@ -273,9 +273,11 @@ def built(rows: pd.DataFrame) -> pd.DataFrame:
 def _lines(rows: pd.DataFrame, line: Callable[[pd.DataFrame], Row], *labels: str) -> pd.DataFrame:
     """Return a line for each source, or for each of its rows that have some labels alike."""
     order, keys = [*rows.sort_index()["source"].unique()], ["source", *labels]
-    groups = [group for _, group in rows.groupby(keys, sort=False)]
-    found = [{**group[keys].iloc[0].to_dict(), **line(group)} for group in groups]
-    return pd.DataFrame(sorted(found, key=lambda each: order.index(each["source"])))
+    found: list[Row] = []
+    for key, group in rows.groupby(keys, sort=False):
+        found.append({**dict(zip(keys, key, strict=True)), **line(group)})
+    found.sort(key=lambda each: order.index(each["source"]))
+    return pd.DataFrame(found)
 
 
 def _errors(rows: pd.DataFrame) -> Row:
@@ -338,14 +340,15 @@ def finding(tables: Tables) -> str:
     frames, slides = (_best(tables[f"{scene}-summary"]) for scene in ("frame", "slide"))
     claims = []
     if len(frames):
-        claims.append(f"the peaks of rocking frames within {part(frames['largest_error'].max())}")
+        most = part(frames["largest_error"].max())
+        claims.append(f"the largest rotation of a rocking frame by up to {most}")
     if len(slides):
-        claims.append(f"slips within {1e3 * slides['largest_slip_error_m'].max():.2g} mm")
+        claims.append(f"a slip by up to {1e3 * slides['largest_slip_error_m'].max():.2g} mm")
     if not claims:
         return "No engine that was asked is built for these scenes."
-    if wrong := int(sum(lines["wrong"].sum() for lines in (frames, slides) if len(lines))):
-        claims.append(f"{wrong} outcomes wrong")
-    return f"The engines, each with its best preset, predict {listed(claims)}."
+    wrong = sum(int(lines["wrong"].sum()) for lines in (frames, slides) if len(lines))
+    beside = f", and predict {wrong} outcomes wrong" if wrong else ""
+    return f"The engines, each with its best preset, miss {listed(claims)}{beside}."
 
 
 def _best(lines: pd.DataFrame) -> pd.DataFrame:

@@ -82,7 +82,7 @@ def _table(lines: Sequence[str]) -> tuple[list[str], list[tuple[int, list[str]]]
     heads = [name.lower() for name in rows[0][1]] if rows else []
     if not {*NEEDED} <= {*heads} <= {*COLUMNS} or len(heads) > len({*heads}):
         words = "name, width and height, in metres, and may be friction and tilt, each once"
-        raise ValueError(f"it has the columns {shown(', '.join(heads))}; they must be {words}")
+        raise ValueError(f"it has the columns {', '.join(heads)!r}; they must be {words}")
     if len(rows) < 2:
         raise ValueError("it has no rows; it must have a block a line below the names")
     return heads, rows[1:]
