@@ -172,9 +172,10 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
     """
     drawing = Figure(figsize=(9.0, 5.4), layout="constrained")
     axes = drawing.subplots()
-    axes.set(xscale="log", yscale="log", ylim=(1e-8, 30.0))
+    axes.set(xscale="log", yscale="log", ylim=(1e-8, TOP))
     mine, others = joint(along), joint(engines_of(published))
     others = others[~others["method"].isin(mine["method"])]
+    best = {f"{name} {engine.best.name}" for name, engine in ENGINES.items()}
     behind, names = Style(GREY, "-", ".", 0.9), []
     for lines in (others, mine):
         for name, line in lines[lines["wall_s"] > 0.0].groupby("method", sort=False):
@@ -185,12 +186,14 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
             axes.plot(line["wall_s"], error, **look)
             last = int(np.argmax(line["wall_s"]))
             colour = "#777777" if lines is others else style.colour
-            at = float(line["wall_s"].iloc[last]), float(error.iloc[last])
-            names.append(Name(called(str(name)), *at, colour))
+            if lines is mine or name in best:
+                at = float(line["wall_s"].iloc[last]), float(error.iloc[last])
+                names.append(Name(called(str(name)), *at, colour))
     words = "a failure or a wrong outcome"
     if untimed := sorted(set(mine["method"]) - set(mine.loc[mine["wall_s"] > 0.0, "method"])):
         words += f"; without a run time: {listed(map(called, untimed))}"
-    strip_beyond(axes, EDGE, words)
+    strip_beyond(axes, EDGE, "")
+    axes.text(0.01, 0.985, words, va="top", fontsize=8, color="#666666", transform=axes.transAxes)
     axes.set_xlabel("run time of a case, set-up apart  [s]")
     axes.set_ylabel(f"largest relative error of the peak, {mine['cases'].max()} cases  [–]")
     counts = f" in {others['cases'].max()} cases" if len(others) else ""

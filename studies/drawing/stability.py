@@ -114,6 +114,8 @@ def _panel(
         heading, colour = "models and SciPy", "#000000"
         if preset:
             heading, colour = told(preset).short, told(preset).colour
+        if len(groups[preset]) < 4:
+            heading = heading.replace(" ", "\n")
         axes.annotate(heading, (end - 0.5 * len(groups[preset]), 0.0), (0.0, NAMES_PT),
                       textcoords="offset points", ha="center", va="bottom", fontsize=9.5,
                       weight="bold", color=colour)  # fmt: skip

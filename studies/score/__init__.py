@@ -107,20 +107,19 @@ def measure(job: Job) -> Row:
 
 WHOLE = ("figure", "aspect", "runs", "impacts", "steps")
 """Columns of whole numbers that not every table has."""
-EVER = ("error", "energy_growth", "peak_ratio")
+EVER = {EXTREMES: ["error", "energy_growth"], STEPS: ["error", "impact_error", "energy_drift"]}
 """Columns that a table has though nothing may be known."""
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows of each table, without the columns of others."""
     found = {}
-    for name, mine in rows.groupby("part", sort=False):
-        others = rows.loc[rows["part"] != name]
-        own = mine.drop(columns=["part", "table"], errors="ignore")
-        own = own[
-            [it for it in own if it in EVER or own[it].notna().any() or others[it].isna().all()]
-        ]
-        found[str(name)] = own.astype({it: int for it in WHOLE if it in own})
+    for name in map(str, rows["part"].unique()):
+        mine = rows[rows["part"] == name]
+        missing = mine.isna().all() & rows[rows["part"] != name].notna().any()
+        strange = [it for it in missing.index[missing] if it not in EVER.get(name, ())]
+        own = mine.drop(columns=["part", *strange]).drop(columns="table", errors="ignore")
+        found[name] = own.astype({it: int for it in WHOLE if it in own})
     return found
 
 
