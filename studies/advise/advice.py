@@ -121,13 +121,14 @@ def command(
     with as_bad_input():
         if symptoms:
             tables = {"symptoms": seen.find(folder, asked, block, dt, friction)}
-            details = list(seen.write(tables["symptoms"]))
+            written = seen.write(tables["symptoms"])
         elif dt is None:
             tables = {"advice": find(folder, asked, error, block)}
-            details = list(write(tables["advice"], block, at))
+            written = write(tables["advice"], block, at)
         else:
             tables = {"step": find_errors(folder, asked, block, dt)}
-            details = list(write(tables["step"], block, at))
+            written = write(tables["step"], block, at)
+        details = list(written) if len(asked) == 1 else [ONE_ENGINE]
     if out is None:
         print(as_text(finding(tables), shown(tables)))
     else:
@@ -136,10 +137,10 @@ def command(
         study = replace(STUDY, name="symptoms" if symptoms else "advise", tabulate=lambda _: tables)
         study.carry_out(out, [], Running(), engines=asked, **size, **how)
     notes = [too_slippery(friction if symptoms else at), made(folder, names, asked)]
-    notes += [f"{STEPPED} {OUTDATED}"] if "advice" in tables else []
+    about = {"advice": f"{STEPPED} {OUTDATED}", "step": "", "symptoms": seen.HALVES}
+    notes += [about[name] for name in tables]
     print()
-    print(*(details if len(asked) == 1 else [ONE_ENGINE]), sep="\n\n", end="\n\n")
-    print(*(fill(note, WIDTH) for note in notes if note), sep="\n\n")
+    print(*details, *(fill(note, WIDTH) for note in notes if note), sep="\n\n")
     return 0
 
 

@@ -20,7 +20,7 @@ from engines.parts.script import Script
 from studies.cases.refusal import BadInputError
 from studies.cases.variants import variants
 from studies.kit.jobs import Row
-from studies.kit.say import WIDTH
+from studies.kit.say import WIDTH, out_of
 from studies.kit.tables import read_table
 from studies.measures.formulas import at_step, by_step
 from studies.measures.published import LADDER, column_of
@@ -281,14 +281,10 @@ def _unique_from(lines: Sequence[str], i: int, j: int) -> int:
 
 def finding(lines: pd.DataFrame) -> str:
     """Say how many symptoms one setting mends, and how well."""
-    mended = lines[lines["after"].notna()]
-    if mended.empty:
-        return "No single setting halves a symptom."
-    factor = (mended["before"] / mended["after"]).abs().median()
-    return (
-        f"One setting alone halves {len(mended)} of {len(lines)} symptoms of engines, and divides "
-        f"every second of these by {factor:.0f} or more."
-    )
+    factors = (lines["before"] / lines["after"]).abs().dropna()
+    by = f", and divides every second of these by {factors.median():.0f} or more"
+    much = by if math.isfinite(factors.median()) else ""
+    return f"A single setting halves {out_of(len(factors), len(lines))} symptoms of engines{much}."
 
 
 def shown(lines: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
@@ -303,12 +299,13 @@ def shown(lines: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
     return tables
 
 
-CHANGES = """A setting helps if it halves what there is, at the p dt of all and at the library's own
-step; a peak, if the median error falls, too. It may make another symptom worse. A setting is what
-changes in the script that `rocking export` writes of the defaults: below the name of a file, lines
-that go (-) and lines that come (+), after those that stay. DT is the step in seconds; what follows
-it is given as a formula, then at a step."""
-"""How what is written out for one engine is read."""
+HALVES = (
+    "A setting helps if it halves what there is, at the p dt of all and at the library's own step; "
+    "a peak, if the median error falls, too. It may make another symptom worse."
+)
+CHANGES = """A setting is what changes in the script that `rocking export` writes of the defaults:
+below the name of a file, lines that go (-) and lines that come (+), after those that stay. DT is
+the step in seconds; what follows it is given as a formula, then at a step."""
 
 
 def write(lines: pd.DataFrame) -> Iterator[str]:
