@@ -12,6 +12,7 @@ from commanding import refused
 
 from analytic import RigidBlock, RockingFrame, SinePulse, SlidingBlock, simulate
 from studies.__main__ import COMMANDS, run
+from studies.kit.app import PLACES
 from studies.kit.scene_options import SceneName
 
 SIZES = {"width": 0.5, "height": 1.5}
@@ -24,10 +25,14 @@ SCENES = {
 }
 """Scene -> its options, and what it is."""
 
+
+def function_of(command):
+    """Return the function of a command."""
+    return import_module(f"studies.{PLACES.get(command, command)}").command
+
+
 TAKERS = [
-    name
-    for name in set(COMMANDS) - {"report", "readme"}
-    if "standing" in inspect.signature(import_module(f"studies.{name}").command).parameters
+    name for name in COMMANDS if "standing" in inspect.signature(function_of(name)).parameters
 ]
 OPTIONS = {
     "compare": ["--sources", "exact", "--json"],
