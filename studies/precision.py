@@ -40,6 +40,7 @@ from studies.measures.differences import posed_cases
 from studies.measures.energy import SAMPLES, energy_drift
 from studies.measures.finer import cheapest_below, joint
 from studies.measures.presets import engine_of, told, uses_of
+from studies.measures.published import TARGETS
 from studies.sources.registry import core_sources, scene_of
 
 if TYPE_CHECKING:
@@ -61,8 +62,6 @@ TYPICAL, NEAR, ALL = "typical", "near overturning", "all"
 """The sets of cases, and both together."""
 EXACT = "Taylor series"
 """The method to whose time the others are compared."""
-TARGETS = (0.1, 1e-2, 1e-3, 1e-4)
-"""Errors that somebody may ask of an engine."""
 FINE_TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
 """Errors that are asked of every method."""
 TOLERANCES = tuple(10.0**-n for n in range(2, 13))

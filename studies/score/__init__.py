@@ -24,7 +24,7 @@ from engines import ENGINES
 from engines.declaration import AT_REST, Engine
 from engines.registry import OWN, UnloadableError, named
 from engines.scene import perhaps
-from studies import precision, stability, sweep
+from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import (
     Out,
@@ -45,7 +45,7 @@ from studies.kit.tables import read_table, write_text
 from studies.measures.differences import summarize, with_reference
 from studies.measures.finer import cheapest_below, joint
 from studies.measures.presets import preset_of
-from studies.measures.published import PUBLISHED
+from studies.measures.published import LADDER, PUBLISHED, TARGETS
 from studies.measures.verdicts import Verdict
 from studies.score import probes
 from studies.sources.registry import announce, presets_of, resolve
@@ -53,12 +53,13 @@ from studies.sources.registry import announce, presets_of, resolve
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SWEEP, STEPS, EXTREMES, MOMENTS = (
-    f"score-{name}" for name in ("sweep", "steps", "extremes", "moments")
+SWEEP, STEPS, EXTREMES, MOMENTS, SCENES = (
+    f"score-{name}" for name in ("sweep", "steps", "extremes", "moments", "scenes")
 )
+FURTHER = {"score-frame": "frame", "score-slide": "slide"}
+"""Table -> its scene."""
 QUICK_EVERY = 11
 """Of the cases of a figure a quick score asks every so-manieth; no divisor of a panel's 40."""
-LADDER = "precision/work-precision.csv"
 SCHEMA = 1
 """Version of the form that `result_of` gives a result."""
 NOISE = 1e-6
@@ -91,6 +92,7 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
         STEPS: along,
         EXTREMES: stability.matrix_jobs(uses, quick),
         MOMENTS: [Job(labels={}, case=flight, source=use) for use in uses],
+        SCENES: [job for job in scenes.jobs(uses, quick) if is_usual(job.labels)],
     }
     return [
         replace(job, labels={"part": name, **job.labels})
@@ -99,10 +101,17 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     ]
 
 
+def is_usual(labels: Mapping[str, Any]) -> bool:
+    """Say whether a scene is a slide, or a usual frame in an engine's own steps."""
+    usual = not labels.get("extreme") and labels.get("refined", 1.0) == 1.0
+    return usual and labels["scene"] in FURTHER.values()
+
+
 def measure(job: Job) -> Row:
     """Return what a job's table has of it."""
     of = {SWEEP: answer, STEPS: precision.measure, EXTREMES: stability.measure}
-    return of.get(job.labels["part"], probes.measure_moment)(job)
+    of |= {MOMENTS: probes.measure_moment, SCENES: scenes.measure}
+    return of[job.labels["part"]](job)
 
 
 WHOLE = ("figure", "aspect", "runs", "impacts", "steps")
@@ -113,9 +122,13 @@ EVER = {EXTREMES: ["error", "energy_growth"], STEPS: ["error", "impact_error", "
 
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows of each table, without the columns of others."""
-    found = {}
+    found: dict[str, pd.DataFrame] = {}
     for name in map(str, rows["part"].unique()):
         mine = rows[rows["part"] == name]
+        if name == SCENES:
+            tables = scenes.tabulate(mine)
+            found |= {name: tables[scene] for name, scene in FURTHER.items() if len(tables[scene])}
+            continue
         missing = mine.isna().all() & rows[rows["part"] != name].notna().any()
         strange = [it for it in missing.index[missing] if it not in EVER.get(name, ())]
         own = mine.drop(columns=["part", *strange]).drop(columns="table", errors="ignore")
@@ -159,7 +172,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         "Along the step, on typical cases and near overturning together": among["this engine"],
         "The cheapest setting below an error there, and the published one": pd.DataFrame(
             {"below": target, "among": whose, **best}
-            for target in precision.TARGETS
+            for target in TARGETS
             for whose, lines in among.items()
             if (best := cheapest_below(lines, target)) is not None
         ),
@@ -190,11 +203,11 @@ STUDY = Study(
     help="""One engine, by ENGINE or ENGINE:PRESET, MODULE:ENGINE or MODULE:build.
 
 The paper's cases with each of its presets, its errors along the step beside the published engines,
-its verdicts on extreme cases, and whether its velocities hold at the `Moment` that its world
-declares. With --require or --against, the exit code is 1 where a requirement falls short, and 0
-whatever else failed; it is 1 where the world declares another `Moment` than the one at which its
-velocities hold, or where an error that does not shrink with the step tells of a wrong inertia, size
-or gravity.""",
+its verdicts on extreme cases, slides and frames, and whether its velocities hold at the `Moment`
+that its world declares. With --require or --against, the exit code is 1 where a requirement falls
+short, and 0 whatever else failed; it is 1 where the world declares another `Moment` than the one at
+which its velocities hold, or where an error that does not shrink with the step tells of a wrong
+inertia, size or gravity.""",
     jobs=jobs,
     measure=measure,
     tabulate=tabulate,

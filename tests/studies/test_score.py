@@ -61,7 +61,7 @@ def test_quick_asks_a_part_of_every_preset():
     quick = score.jobs(["moreau"], True)
     counts = Counter(job.labels["part"] for job in quick)
     assert counts[SWEEP] == 3 * len(range(0, 480, 11))
-    assert counts[MOMENTS] == 3 and min(counts.values()) > 0 and len(counts) == 4
+    assert counts[MOMENTS] == 3 and min(counts.values()) > 0 and len(counts) == 5
     assert {job.source.partition(":")[2] for job in quick} == {"naive", "fixed", "landing"}
     assert {job.source for job in score.jobs(["moreau:fixed"], True)} == {"moreau:fixed"}
 
@@ -70,11 +70,12 @@ def test_each_table_has_its_rows_with_its_own_columns(few):
     asked = [job for job in few(["mujoco:landing"], True) if job.labels["part"] != EXTREMES]
     tables = STUDY.tabulate(pd.DataFrame(measured(asked, score.measure)))
     assert {name: len(table) for name, table in tables.items()} == {
-        "score-sweep": 2, "score-steps": 2, "score-moments": 1
+        "score-sweep": 2, "score-steps": 2, "score-moments": 1, "score-frame": 1
     }  # fmt: skip
     assert tables[SWEEP]["figure"].dtype == int and "method" not in tables[SWEEP]
     assert tables["score-steps"]["runs"].min() >= 1
     assert "peak_ratio" not in tables[MOMENTS]
+    assert abs(tables["score-frame"]["error"].item()) < 1e-2
 
 
 @pytest.mark.slow

@@ -145,7 +145,7 @@ def test_symptoms_are_mended_with_the_friction_that_is_given(tmp_path, capsys):
 def test_estimates_are_made_with_a_friction_and_a_step(tmp_path):
     few = ["--cases", "1", "--tests", "1", "--sources", "pymunk:naive"]
     own = ["--friction", "0.9", "--dt", "0.003"]
-    assert run(["estimate", *few, *own, "--out", str(tmp_path / "a")]) == 0
+    assert run(["validate", "--halves", *few, *own, "--out", str(tmp_path / "a")]) == 0
     rows = pd.read_csv(tmp_path / "a" / "estimate.csv", dtype={"message": str})
     assert len(rows) == 4
     for row in rows.to_dict("records"):
@@ -154,4 +154,4 @@ def test_estimates_are_made_with_a_friction_and_a_step(tmp_path):
         step = 0.003 * case.block.p / (2.0 if row["half"] else 1.0)
         answer = respond("pymunk:naive", case.block, case.motion, friction=0.9, step=step)
         assert row["peak_ratio"] == answer.peak_ratio and row["steps"] == answer.steps
-    assert run(["estimate", *few, "--out", str(tmp_path / "a")]) == 2
+    assert run(["validate", "--halves", *few, "--out", str(tmp_path / "a")]) == 2
