@@ -52,6 +52,8 @@ SEED, FRAMES = 1, 4
 """Of the random frames, and how many of them are asked about."""
 KEY = ["engine", "preset", "factor", "level"]
 """Columns that tell one variant from another."""
+MATTERS = 1.1
+"""Errors over that of the tuned preset from which a setting is what they come from."""
 FOUND = ["failed", "wrong", "max_error"]
 """What shows a variant's quality: outcomes of all cases, peaks of typical ones."""
 
@@ -249,22 +251,25 @@ def recommendation(lines: pd.DataFrame, engine: str) -> pd.DataFrame:
 
 
 def left_at_default(lines: pd.DataFrame) -> pd.DataFrame:
-    """Return for each engine the setting that costs most where it alone is not tuned."""
+    """Return each tuned setting alone at its default, first for each engine what costs most."""
     best = lines[lines["preset"] == BEST]
-    left = best[best["level"] == BY_DEFAULT]
-    left = left.sort_values(["worse", "failed", "max_error"], ascending=False, kind="stable")
     tuned = best[best["factor"] == ""].set_index("engine")["max_error"]
-    first = left.drop_duplicates("engine").sort_index()
-    return first[["engine", "factor", *FOUND]].assign(as_tuned=first["engine"].map(tuned))
+    left = best[best["level"] == BY_DEFAULT]
+    place, as_tuned = left.groupby("engine", sort=False).ngroup(), left["engine"].map(tuned)
+    order, rising = ["place", "worse", "failed", "max_error"], [True, False, False, False]
+    left = left.assign(place=place, as_tuned=as_tuned).sort_values(order, ascending=rising)
+    return left[["engine", "factor", *FOUND, "as_tuned", "worse"]].reset_index(drop=True)
 
 
 def finding(tables: Tables) -> str:
     """Say which engine errs most with one tuned setting at its default, and how many break."""
-    lines = tables["variants"]
-    left = lines[(lines["preset"] == BEST) & (lines["level"] == BY_DEFAULT)]
-    if left["max_error"].isna().all():
-        return "No engine was asked that rocks with one of its tuned settings left at its default."
-    worst, engines = left.nlargest(1, "max_error").iloc[0], left["engine"].nunique()
+    left = left_at_default(tables["variants"])
+    raised = left[left["max_error"] > MATTERS * left["as_tuned"]]
+    if raised.empty:
+        return (
+            "No tuned setting raises the errors of an engine when it alone is left at its default."
+        )
+    worst, engines = raised.nlargest(1, "max_error").iloc[0], left["engine"].nunique()
     more = out_of(left.loc[left["worse"], "engine"].nunique(), engines)
     others = f", and {more} engines predict more outcomes wrong with one setting left so"
     return (
@@ -280,7 +285,9 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     measured = ["ratio_over_eta", "newton_e", "slip_widths", "sink_widths", "step_s"]
     traps = lines[(lines["trap"] != "") & ~plain]
     return {
-        "The setting whose default costs most, where all others are tuned": left_at_default(lines),
+        "The setting whose default costs most, where all others are tuned": (
+            left_at_default(lines).drop_duplicates("engine").drop(columns="worse")
+        ),
         "Presets as they are": lines.loc[
             plain, ["engine", "preset", "cases", *FOUND, "median_error", *measured]
         ],
