@@ -46,6 +46,8 @@ from studies.kit.tables import (
 )
 
 ROWS, PROVENANCE = "rows.sqlite", "provenance.json"
+LOST = ("no result within the time limit", "the process ", "every worker ")
+"""How the message of a row begins whose process has ended without an answer."""
 NAMES = ("name", "record")
 """Labels by which a user knows a case."""
 
@@ -117,7 +119,7 @@ class Store:
         self._base.close()
 
     def kept(self, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> dict[str, Row]:
-        """Return the rows that would be made so now; failed ones are tried again.
+        """Return the rows that would be made so now, but those that another run may make otherwise.
 
         Parameters
         ----------
@@ -143,7 +145,7 @@ class Store:
         found, stale = _sorted(rows, jobs, makers)
         if stale:
             say(f"{len(found)} of {len(jobs)} rows are kept; computed again: {why(stale)}")
-        return {key: row for key, row in found.items() if row["outcome"] != "failed"}
+        return {key: row for key, row in found.items() if not _may_differ(row)}
 
     def _rows(self) -> dict[str, tuple[Maker, Row]]:
         try:
@@ -328,6 +330,11 @@ def _sorted(
             else:
                 found[key] = row
     return found, stale
+
+
+def _may_differ(row: Row) -> bool:
+    """Return whether a row failed by its process or its time, which may do so no more."""
+    return row["outcome"] == "failed" and str(row.get("message", "")).startswith(LOST)
 
 
 def _installed(job: Job) -> bool:

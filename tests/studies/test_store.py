@@ -54,13 +54,16 @@ def test_equal_jobs_share_a_row_and_labels_tell_them_apart():
     assert dataclasses.replace(JOBS[1], options={"step": 1e-4}).key != JOBS[1].key
 
 
-def test_a_failure_is_tried_again(tmp_path, monkeypatch):
-    answers = iter([Response.failure("the disk burns"), Response.failure("and again")])
+def test_a_failure_is_kept_but_one_of_its_process_is_tried_again(tmp_path, monkeypatch):
+    lost = Response.failure("the process was ended by signal SIGSEGV")
+    answers = iter([lost, Response.failure("it diverged")])
     source = Source("model", lambda *_, **__: next(answers))
     monkeypatch.setitem(SOURCES, "never", source)
     jobs = [dataclasses.replace(JOBS[0], source="never")]
-    assert filled(tmp_path, jobs)[0][0]["message"] == "the disk burns"
-    assert filled(tmp_path, jobs)[0][0]["message"] == "and again"
+    assert filled(tmp_path, jobs)[0][0]["message"] == lost.message
+    for computed in (1, 0):
+        rows, count = filled(tmp_path, jobs)
+        assert (rows[0]["message"], count) == ("it diverged", computed)
 
 
 def test_other_code_and_other_versions_make_rows_old(tmp_path, monkeypatch, capsys):
