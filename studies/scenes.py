@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from functools import cache
 from itertools import product
@@ -19,7 +19,6 @@ from analytic.response import Outcome, Reason, Response
 from analytic.simulate import simulate
 from engines import Scene
 from engines.declaration import Stepping
-from engines.layouts import System
 from engines.parts.factors import DEFAULT
 from engines.run.drive import LAG, Stepper, build
 from engines.run.monitor import Monitor
@@ -46,10 +45,8 @@ REFINED = (4.0, 2.0, 0.5)
 FRICTIONS = (0.1, 0.2, 0.3)
 RIDE = SinePulse(amplitude=1.0, omega=2.0 * math.pi, half_cycles=4)
 """Of a floor, which a block with a friction of 1 rides over 0.32 m."""
-RESTS_S = (0.0, 1.0)
-"""For how long all is at rest before a floor moves [s]."""
-HELD_S = 2.0
-"""How long a base is accelerated by less than what friction holds [s]."""
+RESTS_S, HELD_S = (0.0, 1.0), 2.0
+"""How long all rests before a floor moves; how long a base is accelerated below the onset [s]."""
 
 SHARED = ("outcome", "peak_ratio", "impacts", "steps", "wall_s", "message", "reason")
 SEEN = {"frame": ("parting", "tilt", "drift_m"), "slide": ("place_m", "lift_m", "turn_rad")}
@@ -67,7 +64,6 @@ MEASURED = {
     "block": ("exact", "own_exact", "error", "own_error", LAG),
 }
 """Scene -> the columns of its table before source, and after what all have."""
-FLOOR = ["engine", "floor", "carried", "carried_after_rest", LAG]
 WHOLE = ("columns", "phase", "slips", "exact_slips", "half_cycles")
 TYPES = {**dict.fromkeys(WHOLE, int), "extreme": bool, "right": bool}
 """Of columns that hold no other numbers or words."""
@@ -96,17 +92,19 @@ def _frames(sources: Asked, quick: bool) -> Iterator[Job]:
         posed += [(*frame, *PULSES[0], 1.0, True) for frame in EXTREMES]
         posed += [(2, 2.0, *PULSES[0], refined, False) for refined in REFINED]
     for columns, load, amplitude_g, omega, refined, extreme in posed:
-        frame = RockingFrame(width=0.5, height=1.5, columns=columns, load=load)
-        pulse = SinePulse.in_g(amplitude_g, omega=omega, half_cycles=2)
+        case = Question(
+            system=RockingFrame(width=0.5, height=1.5, columns=columns, load=load),
+            motion=SinePulse.in_g(amplitude_g, omega=omega, half_cycles=2),
+        )
         for name, source in sources:
-            for phase, options in _steps(source, frame, pulse, 2 if quick else PHASES, refined):
+            for phase, options in _steps(source, case, 2 if quick else PHASES, refined):
                 values = columns, load, amplitude_g, omega, refined, extreme, phase
                 labels = dict(zip(LABELS["frame"], values, strict=True))
-                yield _job("frame", labels, Question(system=frame, motion=pulse), name, **options)
+                yield _job("frame", labels, case, name, **options)
 
 
 def _steps(
-    source: Source, frame: RockingFrame, pulse: SinePulse, phases: int, refined: float
+    source: Source, case: Question, phases: int, refined: float
 ) -> Iterator[tuple[int, Row]]:
     """Yield steps by which the first impact falls into different parts of equal ones.
 
@@ -118,8 +116,8 @@ def _steps(
         if refined == 1.0:
             yield 0, {}
         return
-    step = used.step if math.isfinite(used.step) else used.step_s * frame.p
-    impact = exact_of(frame, pulse).impacts[0].time * frame.p
+    step = used.step if math.isfinite(used.step) else used.step_s * case.system.p
+    impact = exact_of(case).impacts[0].time * case.system.p
     for phase in range(phases):
         yield phase, {"step": refined * (step * (1.0 + phase / phases * step / impact))}
 
@@ -170,9 +168,9 @@ def _blocks(sources: Asked, quick: bool) -> Iterator[Job]:
 
 
 @cache  # one for all sources
-def exact_of(system: System, motion: Hashable, start: tuple[float, float] = (0.0, 0.0)) -> Response:
+def exact_of(case: Question) -> Response:
     """Return the exact response."""
-    return simulate(system, cast(Motion, motion), start=start)
+    return simulate(case.system, case.motion, start=case.start)
 
 
 def measure(job: Job) -> Row:
@@ -181,7 +179,7 @@ def measure(job: Job) -> Row:
     Errors of peaks are relative, those of slips and places in metres, and nan where there is none.
     """
     response, case, scene = ask(job), job.case, str(job.labels["scene"])
-    exact = exact_of(cast(Hashable, case.system), cast(Hashable, case.motion), case.start)
+    exact = exact_of(case)
     row = {**summary(response), "reason": response.reason.name if response.reason else ""}
     seen = {name: float(response.observables.get(name, math.nan)) for name in SEEN.get(scene, ())}
     if scene == "frame":
@@ -254,13 +252,14 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     first = (frame[["columns", "load", "amplitude_g"]] == [2, 2.0, PULSES[0][0]]).all(axis=1)
     refined = frame[first].sort_values("refined", kind="stable")
     floors = _lines(parts["floor"], _of_floors, "floor")
+    of_floors = ["engine", "floor", "carried", "carried_after_rest", LAG]
     return {
         **parts,
         "frame-summary": _lines(usual, _of_frames),
         "frame-extremes": _lines(frame[frame["extreme"]], _of_extremes, "columns", "load"),
         "frame-steps": _lines(refined, _of_steps, "refined"),
         "slide-summary": _lines(slide, _of_slides),
-        "floor-summary": floors.reindex(columns=FLOOR),
+        "floor-summary": floors.reindex(columns=of_floors),
         "block-summary": _lines(parts["block"], _of_blocks),
     }
 

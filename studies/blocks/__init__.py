@@ -47,7 +47,6 @@ FOUND = ["lifts", "margin", "margin_friction", "islands"]
 """Columns of a block under a record, at whatever factor."""
 SLIDES, SLIDES_FIRST = "slides", "slides first"
 """Why a block has no margin: its friction is below B/H, or less than its rocking needs."""
-FACTORS = "Factors on a record that lift and overturn each block, and outcomes with peaks"
 
 
 def jobs(
@@ -156,9 +155,7 @@ def ranked(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the first row of each block and record, the least margin of a block first."""
     lines = rows.drop_duplicates(PAIR)
     least = lines.groupby("name")["margin"].transform("min")
-    order = lines.assign(least=least, place=range(len(lines)))
-    by = ["least", "name", "margin", "place"]
-    return order.sort_values(by, kind="stable").drop(columns=["least", "place"])
+    return lines.assign(least=least).sort_values(["least", "name", "margin"]).drop(columns="least")
 
 
 def finding(tables: Tables) -> str:
@@ -185,7 +182,9 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     facts = ["width_m", "height_m", "friction", *FOUND, "no_margin"]
     ends = rows.groupby(["scale", "source"], sort=False)["outcome"].value_counts()
     return {
-        FACTORS: ranked(rows)[[*PAIR, *facts]].merge(answers, on=PAIR),
+        "Factors on a record that lift and overturn each block, and outcomes with peaks": (
+            ranked(rows)[[*PAIR, *facts]].merge(answers, on=PAIR)
+        ),
         "Cases by outcome": ends.unstack(fill_value=0).reset_index(),
     }
 
@@ -230,7 +229,7 @@ def command(
     running: Running = Running(),  # noqa: B008
     yes: arguments.Yes = False,
 ) -> int:
-    """Put a list of blocks to recorded ground motions: which overturn, with what margin?
+    """Which blocks of a list overturn under recorded ground motions, with what margin?
 
     A block with friction below B/H slides, and where the friction is less than the rocking needs
     its row says "slides first"; neither has a margin. Forty blocks under one record take seconds.

@@ -2,7 +2,6 @@
 
 import csv
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,9 +17,7 @@ COLUMNS = (*NEEDED, "friction", "tilt")
 LEAST_M, LEAST_FRICTION = 1e-3, 1e-3
 """Least size [m] of a block of a list, and least coefficient of friction: no base is smoother."""
 MOST_LETTERS = 300
-"""Letters of a name."""
-UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]")
-"""What no reader sees, or what turns the direction of the text around it."""
+"""Of a name."""
 SHOWN = 10
 """Bad lines that a refusal names; it is one line."""
 
@@ -91,9 +88,9 @@ def _table(lines: Sequence[str]) -> tuple[list[str], list[tuple[int, list[str]]]
 def _cabinet(cells: Mapping[str, str]) -> Cabinet:
     """Return the block of a line; ValueError names its first bad value."""
     name = cells["name"]
-    if not 0 < len(name) <= MOST_LETTERS or UNSEEN.search(name):
-        seen = "without control characters (ends of lines, tabs, marks of direction)"
-        raise _bad("name", name, f"1 to {MOST_LETTERS} letters, {seen}")
+    if not (0 < len(name) <= MOST_LETTERS and name.isprintable()):
+        unseen = "without ends of lines, tabs, marks of direction and the like"
+        raise _bad("name", name, f"1 to {MOST_LETTERS} letters, {unseen}")
     width, height = (_number(cells, name, LEAST_M, MOST_M, " m") for name in NEEDED[1:])
     lying = math.nextafter(0.5 * math.pi / math.atan2(width, height), 0.0)
     friction = _number(cells, "friction", LEAST_FRICTION, 1e6) if cells.get("friction") else None
