@@ -171,6 +171,11 @@ def test_a_scale_that_overturns_in_a_sliver_counts_and_a_failed_search_has_no_ma
     rows[-1] |= {"outcome": "failed", **dict.fromkeys(found, math.nan)}
     table = blocks.tabulate(pd.DataFrame(rows))["blocks"]
     assert table["no_margin"].tolist() == ["failed"] * 2 and table["margin"].isna().all()
+    weak = [{**row, "friction": 0.2, "outcome": "rocked"} for row in rows]
+    weak[0]["friction_needed"], weak[2] = 0.1, weak[2] | found | {"margin_friction": 0.1}
+    table = blocks.tabulate(pd.DataFrame(weak))["blocks"]
+    assert table["no_margin"].tolist() == ["slides first"] * 2
+    assert table["outcome"].tolist() == ["rocked", "slides first"]
 
 
 FORMULAS = ["=cmd|' /C calc'!A0", "+1+1", "@SUM(A1)", "-2+3", "'=x"]
