@@ -39,12 +39,12 @@ MODES = {
 VERDICTS = {
     "survives": ("#FFFFFF", "survives, as exact"),
     "overturns": ("#CCCCCC", "overturns, as exact"),
-    "peak off": ("#F7EE8A", "survives, peak off by > 10 %"),
+    "peak off": ("#F0E442", "survives, peak off by > 10 %"),
     "false": ("#D55E00", "overturns, exact survives"),
     "missed": ("#0072B2", "survives, exact overturns"),
     REST: ("#56B4E9", "missed rocking"),
     NO_ANSWER: ("#000000", "no result"),
-    "invalid": ("#E6DCF0", "not counted: should slide"),
+    "invalid": ("#999999", "not counted: should slide"),
 }
 """Verdict, or what is right -> its colour and name."""
 

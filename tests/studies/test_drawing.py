@@ -2,6 +2,7 @@
 
 import itertools
 from functools import cache
+from importlib import import_module
 
 import numpy as np
 import pandas as pd
@@ -11,11 +12,12 @@ from matplotlib.text import Text
 
 from engines import ENGINES
 from studies import contact
-from studies.catalogue import STUDIES
 from studies.drawing.contact import MATTER, draw_contact
 from studies.drawing.figures import lay_out
 from studies.drawing.labels import Name, around, spread
 from studies.drawing.linearizations import ONSETS
+from studies.drawing.overturning import VERDICTS
+from studies.drawing.precision import engine_in
 from studies.drawing.styles import (
     ENGINE_COLOURS,
     ENGINE_MARKERS,
@@ -25,8 +27,6 @@ from studies.drawing.styles import (
 )
 from studies.measures.presets import PRESETS, in_order, told
 from studies.measures.published import PUBLISHED
-from studies.overturning.figure import DIFFERENCE_COLOURS
-from studies.precision.figure import engine_in
 
 # Machado, Oliveira and Fernandes, 2009, table 1, severity 1: linear RGB to those without a cone
 VISIONS = {
@@ -92,7 +92,7 @@ def test_sources_are_told_apart_by_colour_line_or_marker(vision):
 
 @pytest.mark.parametrize("vision", VISIONS)
 def test_filled_areas_and_families_of_lines_are_told_apart(vision):
-    areas = [colour for name, colour in DIFFERENCE_COLOURS.items() if name != "failed"]
+    areas = [colour for colour, _ in VERDICTS.values()]
     for colours in (areas, [colour for colour, _ in ONSETS.values()]):
         assert min(distance(*pair, vision) for pair in itertools.combinations(colours, 2)) > APART
 
@@ -169,9 +169,13 @@ def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
     assert height < width * lines["engine"].nunique() / 3.0
 
 
+FOLDERS = {"advise": "symptoms"}
+
+
 @cache
 def pictures_of(study):
-    return next(each for each in STUDIES if each.name == study).pictures(PUBLISHED / study)
+    study, folder = import_module(f"studies.{study}").STUDY, PUBLISHED / FOLDERS.get(study, study)
+    return study.figures(study.read(folder))
 
 
 def words_of(drawing):
@@ -194,7 +198,7 @@ def words_of(drawing):
     return [(text.get_text(), text.get_window_extent()) for text in texts]
 
 
-@pytest.mark.parametrize("study", ["precision", "contact", "symptoms", "validate", "restitution"])
+@pytest.mark.parametrize("study", ["precision", "contact", "advise", "validate", "restitution"])
 def test_a_redrawn_picture_names_every_engine_and_clips_no_words(study):
     for drawing in pictures_of(study).values():
         found = words_of(drawing)
