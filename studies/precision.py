@@ -39,7 +39,7 @@ from studies.measures.costs import STEPPED, best_of
 from studies.measures.differences import posed_cases
 from studies.measures.energy import SAMPLES, energy_drift
 from studies.measures.finer import cheapest_below, joint
-from studies.measures.presets import engine_of, told, uses_of
+from studies.measures.presets import engine_of, look_of, uses_of
 from studies.measures.published import TARGETS
 from studies.sources.registry import core_sources, scene_of
 
@@ -501,7 +501,7 @@ def title_of(method: str) -> str:
     if engine not in ENGINES:
         return method
     preset, comma, dial = varied.partition(", ")
-    return f"{ENGINES[engine].title}, {told(preset).short}{comma}{dial}"
+    return f"{ENGINES[engine].title}, {look_of(preset).short}{comma}{dial}"
 
 
 def finding(tables: Tables) -> str:

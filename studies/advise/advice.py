@@ -42,7 +42,7 @@ from studies.measures.costs import OUTDATED, STEPPED
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.finer import cheapest_kept
 from studies.measures.formulas import by_step
-from studies.measures.presets import told, uses_of
+from studies.measures.presets import look_of, uses_of
 from studies.measures.published import TARGETS, options_at, too_slippery
 from studies.sources.registry import scene_of
 
@@ -245,7 +245,7 @@ def finding(tables: Tables) -> str:
         return f"No published setting keeps an error of {100.0 * lines['target'].max():g} %."
     best = kept[kept["target"] == kept["target"].min()].nsmallest(1, "wall_s").iloc[0]
     return (
-        f"{ENGINES[best['engine']].title} ({told(best['preset']).short}) keeps an error of "
+        f"{ENGINES[best['engine']].title} ({look_of(best['preset']).short}) keeps an error of "
         f"{100.0 * best['target']:g} % at the least cost, {duration(best['wall_s'])} a case."
     )
 

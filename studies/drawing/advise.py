@@ -22,18 +22,18 @@ from studies.drawing.facets import (
 )
 from studies.drawing.styles import title_of
 from studies.kit.say import capital
-from studies.measures.presets import told
+from studies.measures.presets import look_of
 
 FLOOR, EDGE, BROKEN, END = 1e-8, 5.0, 20.0, 80.0
 """Sizes below are drawn here; from where to where cases fail, and the middle of that."""
 STAGES: dict[str, tuple[str, dict[str, Any]]] = {
-    "before": ("the library's defaults", {"marker": "o", "color": told("naive").colour}),
+    "before": ("the library's defaults", {"marker": "o", "color": look_of("naive").colour}),
     "after": (
         "with the one setting that helps most",
         {"marker": "D", "color": "#000000", "fillstyle": "none", "markersize": 9.0},
     ),
-    "tuned": ("contact tuned, fixed step", {"marker": "s", "color": told("fixed").colour}),
-    "landing": ("steps that land on impacts", {"marker": "^", "color": told("landing").colour}),
+    "tuned": ("contact tuned, fixed step", {"marker": "s", "color": look_of("fixed").colour}),
+    "landing": ("steps that land on impacts", {"marker": "^", "color": look_of("landing").colour}),
 }
 """Column -> what it is called, and how it is drawn."""
 MEASURES = {
@@ -63,7 +63,7 @@ def draw_advice(lines: pd.DataFrame, title: str) -> Figure:
         mine = kept[kept["target"] == target]
         for line in mine.to_dict("records"):
             place = (1e3 * line["wall_s"], engines.index(line["engine"]))
-            axes.plot(*place, "o", color=told(line["preset"]).colour)
+            axes.plot(*place, "o", color=look_of(line["preset"]).colour)
             step = "own step" if np.isnan(line["value"]) else f"{line['value']:g}"
             below = line["preset"] == RECOMMENDED
             axes.annotate(step, place, (0, -11 if below else 5), ha="center", fontsize=7,

@@ -13,7 +13,7 @@ from engines.parts.factors import AS_BEST, BY_DEFAULT, LEFT_OUT, OWN_STEP
 from studies.drawing.facets import dot, error_scale, key, panels, preset_dots, rows, strip_beyond
 from studies.drawing.styles import title_of
 from studies.kit.say import capital, part
-from studies.measures.presets import in_order, told
+from studies.measures.presets import in_order, look_of
 
 MATTER = 6
 """How many variants of an engine are drawn one by one."""
@@ -58,7 +58,7 @@ def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
     rows(axes, [_label(line) for line in records])
     strip_beyond(axes, EDGE, "", along="x")
     for place, (text, line) in enumerate(zip(axes.get_yticklabels(), records, strict=True)):
-        colour = told(str(line["preset"])).colour
+        colour = look_of(str(line["preset"])).colour
         text.set(color=colour, fontweight="normal" if line["factor"] else "bold")
         median, error = (max(float(line[name]), LOWEST) for name in ("median_error", "max_error"))
         axes.plot([median, error], [place, place], color=colour, linewidth=2.0, alpha=0.5)
@@ -107,5 +107,5 @@ def _label(line: dict[Any, Any]) -> str:
     first, comma, rest = str(line["level"]).partition(", ")
     level = LEVELS.get(first, first) + comma + rest
     if not line["factor"]:
-        return capital(told(str(line["preset"])).short)
+        return capital(look_of(str(line["preset"])).short)
     return f"without {level}" if line["factor"] == LEFT_OUT else f"{line['factor']}: {level}"

@@ -17,7 +17,7 @@ from matplotlib.typing import ColorType
 from numpy.typing import ArrayLike
 
 from studies.kit.say import power
-from studies.measures.presets import in_order, told
+from studies.measures.presets import in_order, look_of
 
 STRIP = "#eeeeee"
 """Behind what has no place on a scale: failed or wrong."""
@@ -119,7 +119,7 @@ def dot(name: str, marker: str, color: ColorType = "#555555", **look: Any) -> Li
 
 def preset_dots(presets: Iterable[str]) -> list[Line2D]:
     """Return what stands in a key for presets, in their order."""
-    return [dot(told(name).short, "o", told(name).colour) for name in in_order(presets)]
+    return [dot(look_of(name).short, "o", look_of(name).colour) for name in in_order(presets)]
 
 
 def key(drawing: Figure, handles: Sequence[Any], across: int = 6, **look: Any) -> None:

@@ -16,7 +16,7 @@ from studies.drawing.labels import Name, around, beside
 from studies.drawing.styles import LOWEST, Style, engine_style, title_of
 from studies.kit.say import duration, listed
 from studies.measures.finer import joint
-from studies.measures.presets import told
+from studies.measures.presets import look_of
 from studies.precision import EXACT, engines_of, exact_cost
 from studies.precision import title_of as called
 
@@ -56,7 +56,7 @@ def style_of(method: str) -> Style:
     if not engine:
         return STYLES.get(method, Style("#777777", "-", "."))
     preset, _, dial = varied.partition(", ")
-    colour = told(preset).colour
+    colour = look_of(preset).colour
     return Style(colour, ":", "+", 0.9) if dial else Style(colour, "-", "o", 1.6, "full")
 
 
@@ -132,7 +132,7 @@ def _names(lines: pd.DataFrame) -> Iterator[Name]:
     for method, line in lines.groupby("method", sort=False):
         preset, _, dial = engine_in(str(method))[1].partition(", ")
         best = line.fillna({"error": WRONG}).sort_values("error").iloc[0]
-        words = dial or (told(preset).short if preset else str(method))
+        words = dial or (look_of(preset).short if preset else str(method))
         yield Name(words, best["wall_s"], best["error"], style_of(str(method)).colour)
 
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from studies.drawing.facets import key, preset_dots
 from studies.drawing.labels import Name, around
 from studies.drawing.styles import title_of
-from studies.measures.presets import engine_of, in_order, preset_of, told
+from studies.measures.presets import engine_of, in_order, look_of, preset_of
 
 LOWEST = 1e-7
 """Smaller errors are drawn here."""
@@ -53,7 +53,7 @@ def draw_times(lines: pd.DataFrame, title: str, along: str) -> Figure:
     names = []
     for row in lines.dropna(subset="median_error").to_dict("records"):
         low, high = (max(row[name], LOWEST) for name in ("median_error", "largest_error"))
-        colour = told(preset_of(row["source"])).colour
+        colour = look_of(preset_of(row["source"])).colour
         axes.plot([row["ms"]] * 2, [low, high], color=colour, linewidth=1.5, alpha=0.5)
         axes.plot(row["ms"], low, "o", color=colour, markersize=6)
         wrong = f", {row['wrong']:.0f} wrong" if row["wrong"] else ""

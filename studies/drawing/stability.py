@@ -14,7 +14,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from studies.drawing.facets import key
 from studies.drawing.styles import engine_title
-from studies.measures.presets import preset_of, told
+from studies.measures.presets import look_of, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict
 
 MARKS = {
@@ -113,7 +113,7 @@ def _panel(
     for preset, end in zip(groups, ends, strict=True):
         heading, colour = "models and SciPy", "#000000"
         if preset:
-            heading, colour = told(preset).short, told(preset).colour
+            heading, colour = look_of(preset).short, look_of(preset).colour
         if len(groups[preset]) < 4:
             heading = heading.replace(" ", "\n")
         axes.annotate(heading, (end - 0.5 * len(groups[preset]), 0.0), (0.0, NAMES_PT),

@@ -5,7 +5,7 @@ from typing import Any
 
 from analytic.models import MODELS
 from engines import ENGINES
-from studies.measures.presets import Fill, engine_of, preset_of, told
+from studies.measures.presets import Fill, engine_of, look_of, preset_of
 
 LOWEST = 1e-16
 """Errors below are drawn here, on the floor of double precision."""
@@ -60,7 +60,7 @@ def look_at(place: int) -> tuple[str, str]:
 def engine_style(engine: str, preset: str) -> Style:
     """Return colour and marker of an engine, by its place among all, and the preset's fill."""
     colour, marker = look_at(list(ENGINES).index(engine))
-    return Style(colour, marker=marker, fill=told(preset).fill)
+    return Style(colour, marker=marker, fill=look_of(preset).fill)
 
 
 def style_of(source: str) -> Style:
@@ -71,7 +71,7 @@ def style_of(source: str) -> Style:
 
 def line_of(source: str) -> str:
     """Return the line of a source that is drawn as one: a model's own, or that of its preset."""
-    return style_of(source).line or told(source.partition(":")[2]).line
+    return style_of(source).line or look_of(source.partition(":")[2]).line
 
 
 def title_of(engine: str) -> str:
@@ -87,7 +87,7 @@ def engine_title(source: str) -> str:
 def name_of(source: str) -> str:
     """Return how a source is called in a picture: an engine by its title, with its preset."""
     _, colon, preset = source.partition(":")
-    return engine_title(source) + (f", {told(preset).short}" if colon else "")
+    return engine_title(source) + (f", {look_of(preset).short}" if colon else "")
 
 
 def full_name(source: str) -> str:

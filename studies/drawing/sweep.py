@@ -15,7 +15,7 @@ from studies.drawing.facets import STRIP, cells, dot, error_scale, key, preset_d
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import Style, engine_title, line_of, name_of, style_of, title_of
 from studies.kit.say import out_of, part
-from studies.measures.presets import in_order, is_engine, preset_of, told
+from studies.measures.presets import in_order, is_engine, look_of, preset_of
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wrong_in
 
 OVERTURNED = "overturned"
@@ -143,7 +143,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     for line in table.to_dict("records"):
         place = presets.index(str(line["preset"])) - 0.5 * (len(presets) - 1)
         y = engines.index(str(line["engine"])) + APART * place / len(presets)
-        colour = told(str(line["preset"])).colour
+        colour = look_of(str(line["preset"])).colour
         errors.plot([line["median"], line["max"]], [y, y], color=colour, lw=2.4, alpha=0.45)
         errors.plot(line["median"], y, "|", color=colour, markersize=7)
         errors.plot(line["max"], y, "o", color=colour, markersize=5.5)
@@ -168,7 +168,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     times.set_xlabel("run time of a case  [ms]", fontsize=10)
     times.grid(axis="x", alpha=0.25)
     most = {name: part(table.loc[table["preset"] == name, "max"].max()) for name in presets}
-    words = [f"by up to {most[name]} {told(name).words}" for name in (presets[0], presets[-1])]
+    words = [f"by up to {most[name]} {look_of(name).words}" for name in (presets[0], presets[-1])]
     cases = int(table["cases"].max())
     head = f"In {cases} cases peaks are off {words[0]},\n{words[1]}"
     drawing.suptitle(head, fontsize=12)
@@ -205,15 +205,16 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
         names = [engine_title(source) for source in sources]
         line[0].set_yticks(range(len(names)), names, fontsize=8.5)
         wrong = out_of((group["wrong"] != "").sum(), len(group))
-        line[0].set_title(f"{told(preset).short}: {wrong} outcomes wrong", loc="left",
-                          color=told(preset).colour, fontsize=9.5, fontweight="bold")  # fmt: skip
+        look = look_of(preset)
+        line[0].set_title(f"{look.short}: {wrong} outcomes wrong", loc="left",
+                          color=look.colour, fontsize=9.5, fontweight="bold")  # fmt: skip
     for axes, aspect in zip(grid[-1], aspects, strict=True):
         axes.set_xlabel(f"ω/p at H/B = {aspect:g}", fontsize=10)
     bar = drawing.colorbar(shown, ax=grid, extend="both", aspect=40, pad=0.015)
     error_scale(bar.ax.yaxis, LEAST, MOST, 1)
     bar.ax.set_title("error", fontsize=9)
     median = {name: part(groups[name]["error"].abs().median()) for name in presets}
-    words = [f"{median[name]} {told(name).words}" for name in (presets[0], presets[-1])]
+    words = [f"{median[name]} {look_of(name).words}" for name in (presets[0], presets[-1])]
     number = rows["figure"].iloc[0]
     drawing.suptitle(
         f"Figure {number}: half of the engines' errors are below\n{', '.join(words)}", fontsize=12

@@ -12,8 +12,8 @@ Fill = Literal["none", "left", "bottom", "full"]
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """How a preset is told of: in a sentence about engines that have it, and in a picture.
+class Look:
+    """How a preset is named and drawn: in a sentence about engines that have it, and in a picture.
 
     `short` stands after the name of an engine; `line` and `fill` are of an engine's line and
     marker.
@@ -27,23 +27,23 @@ class Told:
 
 
 PRESETS = {
-    "naive": Told("as their documentation shows them", "as documented", "#D55E00", ":", "full"),
-    AT_REST: Told("as documented but on a base at rest", "base at rest", "#E69F00", ":"),
-    RECOMMENDED: Told(
+    "naive": Look("as their documentation shows them", "as documented", "#D55E00", ":", "full"),
+    AT_REST: Look("as documented but on a base at rest", "base at rest", "#E69F00", ":"),
+    RECOMMENDED: Look(
         "as their documentation recommends", "as recommended", "#56B4E9", "-.", "bottom"
     ),
-    "fixed": Told("with a tuned contact and a fixed step", "fixed step", "#0072B2", "--", "left"),
-    "error-controlled": Told(
+    "fixed": Look("with a tuned contact and a fixed step", "fixed step", "#0072B2", "--", "left"),
+    "error-controlled": Look(
         "with the engine's own error-controlled steps", "its own steps", "#CC79A7", "-.", "bottom"
     ),
-    "landing": Told("with steps that land on impacts", "landing steps", "#009E73"),
+    "landing": Look("with steps that land on impacts", "landing steps", "#009E73"),
 }
-"""Preset -> how it is told of, from the libraries' own to the best there is."""
+"""Preset -> how it is named and drawn, from the libraries' own to the best there is."""
 
 
-def told(preset: str) -> Told:
-    """Return how a preset is told of; one of another package by its name, in grey."""
-    return PRESETS.get(preset) or Told(f"with the preset {preset}", preset)
+def look_of(preset: str) -> Look:
+    """Return how a preset is named and drawn; one of another package by its name, in grey."""
+    return PRESETS.get(preset) or Look(f"with the preset {preset}", preset)
 
 
 def is_engine(source: str) -> bool:
@@ -68,7 +68,7 @@ def uses_of(engine: str) -> list[Preset]:
 
 def in_words(preset: str) -> str:
     """Return a preset as part of a sentence."""
-    return told(preset).words
+    return look_of(preset).words
 
 
 def in_order(names: Iterable[str]) -> list[str]:

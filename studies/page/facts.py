@@ -16,12 +16,12 @@ from engines.declaration import AT_REST, RECOMMENDED, Stepping
 from engines.disclosure import Help
 from engines.parts.factors import AS_BEST, BEST, DEFAULT, LEFT_OUT
 from engines.registry import OWN
-from studies.kit.say import capital, duration, listed, part
 from studies.kit.identity import NOT_INSTALLED
+from studies.kit.say import capital, duration, listed, part
 from studies.kit.store import engines_of, provenance_of, whole_runs
 from studies.kit.tables import table_in
 from studies.measures.costs import cost_text
-from studies.measures.presets import engine_of, in_order, preset_of, told
+from studies.measures.presets import engine_of, in_order, look_of, preset_of
 from studies.measures.wrongness import KINDS
 from studies.sweep import over_all, preset_table
 
@@ -64,7 +64,7 @@ def in_scenes(published: Path) -> Table:
         for preset in dict.fromkeys((order[0], order[-1])):
             cells = [cell for known in mine for cell in _outcomes(known, preset)]
             first = f"**{TITLES.get(name, name)}**" if preset == order[0] else ""
-            rows.append([first, told(preset).short, *cells])
+            rows.append([first, look_of(preset).short, *cells])
     return heads, rows
 
 
@@ -254,7 +254,7 @@ def objections(published: Path) -> Iterator[tuple[str, ...]]:
         for name in (RECOMMENDED, AT_REST):
             if {name, DEFAULT} <= mine.keys():
                 pair = [_of_preset(mine[each]) for each in (DEFAULT, name)]
-                yield TITLES[engine], told(name).short, f"{mine[name]['cases']} cases", *pair
+                yield TITLES[engine], look_of(name).short, f"{mine[name]['cases']} cases", *pair
         plain = variant_of(own, engine, DEFAULT)
         if plain is not None:
             for line in _better(own, engine, plain):

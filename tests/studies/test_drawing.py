@@ -25,7 +25,7 @@ from studies.drawing.styles import (
     look_at,
     title_of,
 )
-from studies.measures.presets import PRESETS, in_order, told
+from studies.measures.presets import PRESETS, in_order, look_of
 from studies.measures.published import PUBLISHED
 
 # Machado, Oliveira and Fernandes, 2009, table 1, severity 1: linear RGB to those without a cone
@@ -110,9 +110,9 @@ def test_a_preset_of_another_engine_is_told_of_by_its_name_or_its_look(preset):
     drawn = draw_contact(lines[lines["engine"] == "dart"].replace({"preset": {"landing": preset}}))
     words = [text.get_text() for text in drawn.legends[0].get_texts()]
     asked = (preset, "fixed", "recommended", "naive")
-    assert {*words[:4]} == {told(name).short for name in asked}
+    assert {*words[:4]} == {look_of(name).short for name in asked}
     colours = [label.get_color() for label in drawn.axes[0].get_yticklabels()]
-    assert told(preset).colour in colours and told("landing").colour not in colours
+    assert look_of(preset).colour in colours and look_of("landing").colour not in colours
     assert in_order(["gentle", "landing", "naive"]) == ["naive", "gentle", "landing"]
 
 
@@ -147,7 +147,7 @@ def test_names_keep_clear_of_each_other_of_lines_and_of_words():
 def test_every_preset_has_a_look_of_its_own(preset):
     declared = {each.name for engine in ENGINES.values() for each in engine.presets}
     assert set(PRESETS) == declared
-    assert told(preset).colour not in [told(name).colour for name in declared - {preset}]
+    assert look_of(preset).colour not in [look_of(name).colour for name in declared - {preset}]
 
 
 def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
@@ -226,5 +226,5 @@ def test_precision_has_a_panel_for_each_engine_in_which_its_presets_are_named():
         mine = [method for method in table["method"].unique() if engine_in(method)[0] == name]
         named = [text.get_text() for text in panels[title_of(name)].texts]
         presets = [engine_in(method)[1] for method in mine]
-        assert {told(preset).short for preset in presets if "," not in preset} <= set(named)
+        assert {look_of(preset).short for preset in presets if "," not in preset} <= set(named)
     assert len(drawing.axes) == 1 + sum(title_of(name) in panels for name in ENGINES)
