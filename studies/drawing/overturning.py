@@ -11,14 +11,16 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.patheffects import withStroke
+from matplotlib.patheffects import AbstractPathEffect, withStroke
 from scipy.ndimage import distance_transform_edt
 
 from analytic.motion import FloatArray
 from studies.cases.window import AXES, LEAST_ONSETS, Window
 from studies.drawing.facets import key, panels
 from studies.drawing.styles import engine_title, full_name, style_of
+from studies.kit.say import listed
 from studies.measures.differences import conditioning_of
+from studies.measures.presets import in_words, preset_of
 from studies.measures.wrongness import NO_ANSWER, REST
 
 AMPLITUDE = "amplitude of the pulse  $a_p$ / (g tan α)  [–]"
@@ -44,7 +46,7 @@ VERDICTS = {
     "missed": ("#0072B2", "survives, exact overturns"),
     REST: ("#56B4E9", "missed rocking"),
     NO_ANSWER: ("#000000", "no result"),
-    "invalid": ("#999999", "not counted: should slide"),
+    "invalid": ("#999999", "not counted: slides or lifts off"),
 }
 """Verdict, or what is right -> its colour and name."""
 
@@ -99,25 +101,29 @@ def draw_differences(areas: pd.DataFrame, cells: pd.DataFrame | None, window: Wi
     drawn = [*models, *(name for name in parts if name not in right or name in shown)]
     drawing, grid = panels(len(drawn), ACROSS, (3.0, 2.8), 0.9)
     exact = _picture(areas[areas["model"] == "exact"], window) >= 0
-    seen = {"survives", "overturns"}
+    names, seen = list(VERDICTS), {"survives", "overturns"}
     for place, (axes, source) in enumerate(zip(grid, drawn, strict=True)):
         if source in models:
             found = _picture(areas[areas["model"] == source], window) >= 0
-            side = np.where(found, "false", "missed")
-            verdict = np.where(found == exact, np.where(exact, "overturns", "survives"), side)
+            side = np.where(found, names.index("false"), names.index("missed"))
+            codes = np.where(found == exact, np.where(exact, 1, 0), side)
             wrong = f"{(found != exact).mean():.1%}".replace("%", " %")
         else:
             part = parts[source]
             over = np.where(part["exact_mode"] >= 0, "overturns", "survives")
             known = part["verdict"].where(part["verdict"] != "right", over)
-            wide = part.assign(known=known).pivot(index="x", columns="onsets", values="known")
-            verdict, wrong = wide.to_numpy(), f"{(known != over).sum()} of {len(part)} cells"
-        seen |= set(np.unique(verdict))
-        codes = np.select([verdict == name for name in VERDICTS], range(len(VERDICTS)))
+            wide = part.assign(code=known.map(names.index))
+            codes = wide.pivot(index="x", columns="onsets", values="code").to_numpy()
+            wrong = f"{(known != over).sum()} of {len(part)} cells"
+        seen |= {names[code] for code in np.unique(codes)}
         _paint(axes, codes, [colour for colour, _ in VERDICTS.values()], window)
         axes.set_title(f"{full_name(str(source))}:\n{wrong} wrong", fontsize=10)
         _frame(axes, window, below=place + ACROSS >= len(drawn), left=False)
-    words = f"; no cell wrong: {', '.join(map(full_name, right))}" if right else ""
+    presets = {
+        name: [it for it in right if preset_of(it) == name] for name in map(preset_of, right)
+    }
+    alike = [f"{listed(map(engine_title, of))} {in_words(name)}" for name, of in presets.items()]
+    words = f"; no cell wrong: {'; '.join(alike)}" if right else ""
     title = fill(f"Beside the exact map, {window.title}{words}", LETTERS * min(len(drawn), ACROSS))
     drawing.suptitle(title, fontsize=11)
     drawing.supylabel(AMPLITUDE, fontsize=10)
@@ -139,6 +145,7 @@ def draw_conditioning(table: pd.DataFrame, forces: pd.DataFrame, window: Window)
     shown = axes.imshow(values.to_numpy().T, origin="lower", aspect="auto", cmap="viridis",
                         extent=_extent(window), norm=LogNorm(1.0, MOST_KAPPA))  # fmt: skip
     drawing.colorbar(shown, ax=axes, extend="max", label="κ of the exact peak  [–]")
+    halo: list[AbstractPathEffect] = [withStroke(linewidth=3, foreground="white")]
     for name, levels, colour in (
         ("friction_needed", [0.3, 0.4, 0.5, 0.7, 1.0, 1.5], "#000000"),
         ("min_normal", [0.0], "#D55E00"),
@@ -147,8 +154,9 @@ def draw_conditioning(table: pd.DataFrame, forces: pd.DataFrame, window: Window)
         level = np.ma.masked_invalid(wide.to_numpy())
         if level.count() and min(wide.shape) > 1:
             lines = axes.contour(wide.columns, wide.index, level, levels, colors=colour)
-            lines.set_path_effects([withStroke(linewidth=3, foreground="white")])
-            axes.clabel(lines, fmt=lambda at, name=name: f"μ = {at:g}" if at else "lifts off")
+            lines.set_path_effects(halo)
+            for text in axes.clabel(lines, fmt=lambda at: f"μ = {at:g}" if at else "lifts off"):
+                text.set_path_effects(halo)
     _frame(axes, window)
     title = (
         f"How sensitive a peak is: {window.title}\n"

@@ -18,7 +18,7 @@ from analytic import (
     peak_ratios,
     simulate,
 )
-from analytic.criteria import overturning_amplitude
+from analytic.criteria import overturning_amplitude, overturning_velocity
 from analytic.maps import FAILED, NOT_LIFTED, SURVIVES
 
 LINEAR = [name for name, model in MODELS.items() if model.linear]
@@ -130,6 +130,23 @@ def test_overturning_without_impact_begins_where_the_criterion_says(
     peaks, _ = peak_ratios(alpha, sides, omega_over_p, half_cycles, model, restitution=0.0)
     if half_cycles == 1 or omega_over_p >= 1.0:
         assert np.isinf(peaks).tolist() == [False, True]
+
+
+@pytest.mark.parametrize(("omega_over_p", "excess"), [(1.0, 0.0649), (2.0, 0.195), (8.0, 0.406)])
+def test_housners_own_formula_lies_above_the_threshold(omega_over_p, excess):
+    """Housner (1963): sqrt(1 + (ω/p)²), which drops the exponential and so is not safe."""
+    formula = 0.1 * math.hypot(1.0, omega_over_p)
+    found = overturning_modes(0.1, np.linspace(0.1, formula, 20_001), omega_over_p, 1, "housner")
+    least = 0.1 + np.argmax(found.mode >= 0) / 20_000 * (formula - 0.1)
+    assert 1.0 - least / formula == pytest.approx(excess, abs=1e-3)
+
+
+def test_a_short_pulse_overturns_by_its_velocity():
+    """One step in velocity, 4 R p sqrt(2 (1 - cos α)) / (3 cos α)."""
+    block, short = RigidBlock(width=0.5, height=2.0), 1e5
+    velocity = overturning_velocity(block) * np.array([1.0 - 3e-5, 1.0 + 3e-5])
+    amplitude = 0.5 * velocity * short * block.p / block.gravity
+    assert overturning_modes(block.alpha, amplitude, short, 1).mode.tolist() == [SURVIVES, 0]
 
 
 @pytest.mark.parametrize("model", MODELS)

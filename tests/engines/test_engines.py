@@ -32,7 +32,7 @@ from uses import (
     take_a_step,
 )
 
-from analytic import RigidBlock, SinePulse
+from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Outcome, Reason
 from engines import FRAMES
 from engines.declaration import UNTUNED, Stepping
@@ -258,6 +258,33 @@ def test_equal_steps_say_how_far_the_pivot_slid(engine):
     assert slid_of(found)[0] == pytest.approx(found.slip_m, rel=1e-2)
     held = rocked(engine, pulse(1.3, 3.0, 2, FREEZER), system=FREEZER, preset="fixed")
     assert (held.outcome, held.message) == (Outcome.ROCKED, "")
+
+
+@pytest.mark.parametrize("engine", CORE)
+@pytest.mark.parametrize(
+    ("aspect", "onsets", "omega_over_p", "stays"),
+    [(1.0, 1.2, 4.0, True), (3.0, 2.4, 8.0, True), (1.0, 2.0, 3.0, False), (1.5, 2.4, 1.0, False)],
+)
+def test_a_pivot_lifts_off_where_the_exact_motion_would_have_to_pull(
+    engine, aspect, onsets, omega_over_p, stays
+):
+    block = RigidBlock(width=0.5, height=0.5 * aspect)
+    motion = pulse(onsets, omega_over_p, 2, block)
+    assert (simulate(block, motion).min_normal > 0.0) is stays
+    found = rocked(engine, motion, system=block, preset="fixed")
+    assert (found.hop_m < 3e-5 * block.width) is stays
+
+
+@pytest.mark.parametrize("engine", CORE)
+def test_a_pivot_slides_where_the_exact_motion_needs_more_friction(engine):
+    block = RigidBlock(width=0.5, height=1.0)
+    motion = pulse(1.2, 4.0, 2, block)
+    needed = simulate(block, motion).friction_needed
+    enough, short = (
+        rocked(engine, motion, system=block, preset="fixed", friction=k * needed)
+        for k in (1.2, 0.8)
+    )
+    assert enough.slip_m < 3e-4 * block.width < short.slip_m
 
 
 @every_fixed_use
