@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 RETIRED = {
     **dict.fromkeys(("ensemble", "free", "harmonic", "literature", "redraw", "throughput"), ""),
     "cost": "precision",
-    "defaults": "overturning --sources engines:naive",
+    "defaults": "overturning --planes --sources engines:naive",
     "estimate": "validate --halves",
     "steps": "validate",
     "symptoms": "advise --symptoms",
