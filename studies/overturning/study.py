@@ -21,7 +21,7 @@ from studies.cases.window import LEAST_ONSETS, Axis, Window
 from studies.kit.arguments import Count, Positive, Yes, as_bad_input, refuse_given
 from studies.kit.jobs import Job, Question, Row, answer, ask
 from studies.kit.options import Running, refuse_days, refuse_excess
-from studies.kit.say import capital, out_of, part
+from studies.kit.say import capital, out_of
 from studies.kit.store import usable_cores
 from studies.kit.study import Study, Tables
 from studies.measures.presets import in_order, in_words, preset_of
@@ -281,7 +281,7 @@ def intervals(edges: pd.DataFrame, model: str, window: Window) -> pd.DataFrame:
     later = pd.DataFrame({"x": edges["x"], "low": middle, "mode": edges["above"]})
     spans = pd.concat([first, later]).sort_values(["x", "low"], ignore_index=True)
     spans.insert(2, "high", spans.groupby("x")["low"].shift(-1).fillna(window.onsets))
-    return spans
+    return spans.astype({"mode": int})
 
 
 def forces(window: Window) -> pd.DataFrame:
@@ -351,7 +351,7 @@ def finding(tables: Tables) -> str:
     models, engines = (lines[of].copy() for of in (lines["cells"].isna(), lines["cells"].notna()))
     if len(models):
         wrong = (models[FALSE] + models[MISSED]).set_axis(models["source"])
-        said.append(f"{wrong.idxmax()} predicts {part(wrong.max())} of the map wrongly")
+        said.append(f"{wrong.idxmax()} predicts {100.0 * wrong.max():.2g} % of the map wrongly")
     if len(engines):
         presets = engines["source"].map(preset_of)
         best = in_order(presets)[-1]
@@ -414,8 +414,10 @@ def figures(tables: Tables) -> Mapping[str, Figure]:
 
     if "parts" in tables:
         rows = planes.with_verdicts(tables["defaults"])
-        widths = dict(zip(("small", "large"), planes.WIDTHS_M, strict=True))
-        return {name: drawing.draw_plane(rows, width) for name, width in widths.items()}
+        widths = zip(
+            ("small", "large"), planes.WIDTHS_M if len(tables["parts"]) else (), strict=False
+        )
+        return {name: drawing.draw_plane(rows, width) for name, width in widths}
     window, engines = window_of(tables["window"]), tables.get("engines")
     kappa, forces = tables["conditioning"], tables["validity"]
     drawn = {"map": drawing.draw_map(tables["map"], window)}
