@@ -19,8 +19,9 @@ import numpy as np
 import pandas as pd
 
 from analytic import RigidBlock, peak_ratios, simulate
-from analytic.response import Outcome, Reason, Response
+from analytic.response import Outcome, Response
 from engines import ENGINES
+from engines.declaration import Engine
 from engines.run.drive import build
 from studies.cases.paper import (
     HISTORIES,
@@ -186,7 +187,8 @@ def jobs(sources: Iterable[str], quick: bool) -> list[Job]:
     alone = [{"table": SHARES, "engine": engine} for engine in engines]
     alone += [
         {"table": SCENES, "engine": engine, "scene": left_out}
-        for engine, left_out in product(engines, omissions())
+        for engine, (left_out, options) in product(engines, omissions().items())
+        if has(ENGINES[engine], **options)
     ]
     if "exact" in names:
         alone += [{"table": REFERENCE, "scene": name} for name in references()]
@@ -304,35 +306,27 @@ def clock(engine: str) -> Iterator[list[float]]:
         setattr(owner, name, step)
 
 
+def has(engine: Engine, preset: str = "", settings: Row | None = None, **_: Any) -> bool:
+    """Say whether an engine has what is put back into its scene."""
+    known = not preset or preset in [use.name for use in engine.presets]
+    return known and engine.preset(preset or None).takes(**settings or {})
+
+
 def put_back(job: Job) -> Row:
-    """Time a scene with what it leaves out; an engine that has no such thing fails."""
-    engine, options = job.asked.declared, omissions()[str(job.labels["scene"])]
-    preset, own = options.pop("preset", ""), options.get("settings", {})
+    """Time a scene with what it leaves out."""
+    options = omissions()[str(job.labels["scene"])]
     observed = {name: options.pop(name) for name in ("duration", "times") if name in options}
-    missing = ""
-    if preset and preset not in [use.name for use in engine.presets]:
-        missing = f"preset {preset!r}"
-    elif not job.asked.used.takes(**own):
-        missing = f"setting of {', '.join(own)} to put back"
-    else:
-        source = f"{engine.name}:{preset}" if preset else job.source
-        case = replace(job.case, **observed)
-        job = replace(job, case=case, source=source, options=options)
-
-    def timed() -> Response:
-        if missing:
-            words = f"not available: {engine.name} has no {missing}"
-            return Response.failure(words, reason=Reason.UNAVAILABLE)
-        return ask(job)
-
-    found, runs = best_of(timed, job.labels["budget_s"])
+    preset = options.pop("preset", "")
+    source, case = f"{job.source}:{preset}" if preset else job.source, replace(job.case, **observed)
+    posed = replace(job, case=case, source=source, options=options)
+    found, runs = best_of(partial(ask, posed), job.labels["budget_s"])
     exact = simulate(CASE.block, CASE.motion).peak_ratio
     return {
         **summary(found),
         "runs": runs,
         "step_s": found.wall_s / max(found.steps, 1),
         "setup_s": found.setup_s,
-        "memory_kib": math.nan if found.outcome is Outcome.FAILED else memory_of(job),
+        "memory_kib": math.nan if found.outcome is Outcome.FAILED else memory_of(posed),
         "error": found.peak_ratio / exact - 1.0,
     }
 
@@ -532,7 +526,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     costs = over_targets(typical, "wall_s")
     costs[costs.columns[1:]] /= exact_cost(typical)
     cost = scenes["wall_s"] / scenes.groupby("engine")["wall_s"].transform("first")
-    missing = scenes["message"] != ""
     counts = reference["scene"].str.extract(r"^(\d+) cases", expand=False).astype(float).fillna(1.0)
     found = {
         "The cheapest setting of an engine below an error, as with every finer one": pd.DataFrame(
@@ -548,9 +541,8 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
             over_engine=shares["step_s"] / shares["engine_s"]
         ),
         "What a scene leaves out, put back one at a time; cost: run time over the scene as it is": (
-            scenes.assign(cost=cost).loc[~missing].drop(columns="message")
+            scenes.assign(cost=cost)[scenes["steps"] > 0].drop(columns="message")
         ),
-        "What an engine cannot put back": scenes.loc[missing, ["engine", "scene", "message"]],
         "What the exact solution leaves out; case_us: microseconds a case": reference.assign(
             case_us=1e6 * reference["wall_s"] / counts
         ),
@@ -592,7 +584,7 @@ takes about 10 minutes.""",
         "for each of its presets from coarse to fine, all other methods pale behind; in the strip "
         "above, settings with which a case fails or has a wrong outcome.",
         "cost": "What each thing put back into a scene does to run time, on the left, and to the "
-        "error, on the right.",
+        "error, on the right; an engine without such a thing has no mark there.",
     },
     running=Running(jobs=1),
 )

@@ -142,7 +142,7 @@ def draw_scenes(scenes: pd.DataFrame) -> Figure:
     drawing = Figure(figsize=(9.6, 1.6 + 0.4 * len(names)), layout="constrained")
     costs, errors = drawing.subplots(1, 2, sharey=True)
     for place, engine in enumerate(engines):
-        rows = scenes[scenes["engine"] == engine].set_index("scene").loc[names]
+        rows = scenes[scenes["engine"] == engine].set_index("scene").reindex(names)
         levels = np.arange(len(names)) + 0.7 * ((place + 0.5) / len(engines) - 0.5)
         taken = rows["wall_s"].where(rows["error"].notna())  # what an engine has not takes no time
         factor, look = taken / taken.iloc[0], engine_style(engine, "").points(6.5)
