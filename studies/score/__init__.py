@@ -152,8 +152,8 @@ def finding(tables: Tables) -> str:
     moments = tables[MOMENTS]
     if wrong := probes.wrong_moment(moments) or probes.wrong_quantity(moments):
         return wrong
-    lines = swept(tables).sort_values(["agree", "max_error"], ascending=[True, False])
-    best = lines.iloc[-1]
+    lines = swept(tables).sort_values("max_error", ascending=False, kind="stable")
+    best = lines.sort_values("agree", kind="stable").iloc[-1]
     return (
         f"{best['source']} predicts {out_of(best['agree'], best['cases'])} outcomes, and every "
         f"peak within {part(best['max_error'])}."

@@ -11,7 +11,6 @@ from commanding import CASE
 from studies.__main__ import COMMANDS, run
 
 ARGUMENTS = {
-    "advise": ("--symptoms", "--engines", "moreau"),
     "sweep": ("--figure", "6", "--accuracy", "loose", "--sources", "exact", "moreau"),
     "histories": ("--figure", "4", "--sources", "exact", "moreau"),
     "scenes": ("--quick", "--sources", "exact", "moreau"),
@@ -25,7 +24,7 @@ ARGUMENTS = {
 OTHERWISE = {"compare", "animate", "export", "doctor", "report", "readme"}
 """Commands of one case, and of all studies."""
 OF_NO_ENGINE = {"linearizations", "blocks"}
-OF_ENGINES_THAT_WERE_ASKED = {"restitution"}
+OF_ENGINES_THAT_WERE_ASKED = {"advise", "restitution"}
 
 
 def test_every_study_is_here():
