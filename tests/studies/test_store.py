@@ -121,7 +121,7 @@ def test_a_measure_of_a_study_depends_on_the_files_that_it_imports():
 
 def test_rows_that_are_not_asked_for_are_refused(tmp_path):
     filled(tmp_path)
-    with pytest.raises(FolderError, match="holds results of case 2, which must be named"):
+    with pytest.raises(FolderError, match="holds results of case 2; name that, too"):
         filled(tmp_path, JOBS[:2])
     with pytest.raises(FolderError, match="holds results of source rk4"):
         filled(tmp_path, JOBS[::2])
