@@ -89,7 +89,7 @@ def _name_the_areas(axes: Axes, codes: FloatArray, window: Window) -> set[int]:
 
 
 def draw_differences(areas: pd.DataFrame, cells: pd.DataFrame | None, window: Window) -> Figure:
-    """Draw where each source differs from exact, from map.csv and engines' cells with verdicts.
+    """Draw where each source differs from exact, from map.csv and engines.csv.
 
     Engines that differ in no cell are named instead, but for one if all are such.
     """
@@ -110,7 +110,7 @@ def draw_differences(areas: pd.DataFrame, cells: pd.DataFrame | None, window: Wi
             wrong = f"{(found != exact).mean():.1%}".replace("%", " %")
         else:
             part = parts[source]
-            over = np.where(part["exact_mode"] >= 0, "overturns", "survives")
+            over = np.where(part["outcome"] == "overturned", "overturns", "survives")
             known = part["verdict"].where(part["verdict"] != "right", over)
             wide = part.assign(code=known.map(names.index))
             codes = wide.pivot(index="x", columns="onsets", values="code").to_numpy()
@@ -170,7 +170,7 @@ def draw_plane(rows: pd.DataFrame, width: float) -> Figure:
     """Draw the verdicts on full sines for blocks of one width at H/B 3, a map for each engine."""
     shown = (rows["pulse"] == "full-sine") & (rows["aspect"] == 3.0) & (rows["width_m"] == width)
     rows = rows[shown & (rows["source"] != "exact")]
-    over = np.where(rows["exact_outcome"] == "overturned", "overturns", "survives")
+    over = np.where(rows["outcome"] == "overturned", "overturns", "survives")
     rows = rows.assign(shown=rows["verdict"].where(rows["verdict"] != "right", over))
     sources = list(rows["source"].unique())
     drawing, grid = panels(len(sources), ACROSS, (2.4, 2.4), 1.3, sharex=True, sharey=True)

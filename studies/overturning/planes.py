@@ -72,7 +72,7 @@ def verdicts(found: ArrayLike, exact: ArrayLike) -> NDArray[np.str_]:
 
 
 def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
-    """Add to rows of defaults.csv the exact outcome, the error of a peak, and the verdict."""
+    """Add to the rows of planes the error of a peak and the verdict."""
     exact = rows[rows["source"] == "exact"].set_index(CASE)[["outcome", "peak_ratio"]]
     # of the block without the rest before; inf if it would lift off
     exact["needed"] = [simulate(*posed(*case[:-1])).friction_needed for case in exact.index]
@@ -87,12 +87,13 @@ def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
     friction = {name: it.used.settings.friction for name, it in asked.items() if it.engine}
     slides = right["needed"] > found["source"].map(friction)
     verdict = np.where(slides, INVALID, np.where(error.abs() > CLOSE, OFF, verdict))
-    return found.assign(exact_outcome=right["outcome"], error=error, verdict=verdict)
+    return found.assign(error=error, verdict=verdict)
 
 
 def tables(rows: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
     """Return the rows, and a line for each engine and width, and for each engine and rest."""
     known = with_verdicts(rows)
+    written = known.drop(columns="error")
     known = known[(known["source"] != "exact") & (known["verdict"] != INVALID)]
     verdict = known["verdict"].replace({FALSE: FALL, MISSED: FALL})
     known = known.assign(
@@ -114,7 +115,7 @@ def tables(rows: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
         **sums("wall_s", *KINDS),
     )
     rests = by_rest.agg(cases=("close", "size"), **sums("close", *KINDS))
-    return {"defaults": rows, "parts": parts.reset_index(), "rests": rests.reset_index()}
+    return {"defaults": written, "parts": parts.reset_index(), "rests": rests.reset_index()}
 
 
 def finding(parts: pd.DataFrame) -> str:

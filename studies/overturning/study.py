@@ -254,6 +254,8 @@ def tabulate(rows: pd.DataFrame) -> Tables:
         if (mine := rows["table"] == name).any():
             whole = {each: int for each in ("impacts", "steps", "runs") if each in columns}
             tables[name] = rows.loc[mine, list(columns)].fillna({"runs": 0}).astype(whole)
+    if "engines" in tables:
+        tables["engines"] = with_verdicts(tables["engines"], window)
     compared = differences(tables["map"], tables.get("engines"), window)
     return tables | ({"differences": compared} if len(compared) else {})
 
@@ -294,11 +296,11 @@ def forces(window: Window) -> pd.DataFrame:
 
 
 def with_verdicts(engines: pd.DataFrame, window: Window) -> pd.DataFrame:
-    """Add to engines' rows on a map the exact mode and the verdict on the outcome."""
+    """Add to engines' rows on a map the verdict on the outcome."""
     mode = window.modes(engines["x"].to_numpy(), engines["onsets"].to_numpy()).mode
     # no pulse of the map is too weak to lift the block
     exact = np.where(mode >= 0, Outcome.OVERTURNED.value, Outcome.ROCKED.value)
-    return engines.assign(exact_mode=mode, verdict=planes.verdicts(engines["outcome"], exact))
+    return engines.assign(verdict=planes.verdicts(engines["outcome"], exact))
 
 
 def differences(areas: pd.DataFrame, engines: pd.DataFrame | None, window: Window) -> pd.DataFrame:
@@ -413,18 +415,15 @@ def figures(tables: Tables) -> Mapping[str, Figure]:
     from studies.drawing import overturning as drawing
 
     if "parts" in tables:
-        rows = planes.with_verdicts(tables["defaults"])
-        widths = zip(
-            ("small", "large"), planes.WIDTHS_M if len(tables["parts"]) else (), strict=False
-        )
-        return {name: drawing.draw_plane(rows, width) for name, width in widths}
-    window, engines = window_of(tables["window"]), tables.get("engines")
+        widths = zip(("small", "large"), planes.WIDTHS_M, strict=True)
+        known = tables["defaults"] if len(tables["parts"]) else pd.DataFrame()
+        return {name: drawing.draw_plane(known, at) for name, at in widths if len(known)}
+    window, areas = window_of(tables["window"]), tables["map"]
     kappa, forces = tables["conditioning"], tables["validity"]
-    drawn = {"map": drawing.draw_map(tables["map"], window)}
+    drawn = {"map": drawing.draw_map(areas, window)}
     drawn["conditioning"] = drawing.draw_conditioning(kappa, forces, window)
     if "differences" in tables:
-        cells = None if engines is None else with_verdicts(engines, window)
-        drawn["differences"] = drawing.draw_differences(tables["map"], cells, window)
+        drawn["differences"] = drawing.draw_differences(areas, tables.get("engines"), window)
     return drawn
 
 
