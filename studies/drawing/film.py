@@ -27,6 +27,7 @@ from studies.kit.tables import draft
 
 HELD_S = 1.5
 """How long a film stays at its end [s], where its verdicts are read."""
+NONE = Image.Dither.NONE
 POSTS = 9
 """Posts that stand still behind the base, so that its motion is seen."""
 
@@ -53,9 +54,9 @@ def _write_gif(path: Path, stage: "Stage", rate: int) -> None:
     """Write a film with one palette, undithered: others would flicker, and take long to find."""
     seen = [stage.picture(frame) for frame in (0, stage.count // 2, stage.count - 1)]
     sheet = Image.fromarray(np.concatenate(seen))
-    palette = sheet.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    palette = sheet.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=NONE)
     first, *others = (
-        Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE)
+        Image.fromarray(picture).quantize(palette=palette, dither=NONE)
         for picture in stage.pictures()
     )
     each = 1000 // rate
