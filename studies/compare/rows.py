@@ -27,11 +27,6 @@ if TYPE_CHECKING:
 
 EDGE, TIMED_IMPACTS = 0.01, 5
 """Part of the amplitude that should not decide who overturns; first impacts that are compared."""
-COLUMNS = (
-    *("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message", "error"),
-    *("velocity_ratio", "impact_error", "kappa", "sensitivity", "estimate", "bound"),
-)
-"""Of a record, the last two where asked for."""
 
 
 def window_of(system: System, motion: Motion, duration: float | None) -> float:
@@ -53,9 +48,9 @@ def compare(
 ) -> list[Row]:
     """Ask every source, and the exact solution besides; return a row for each.
 
-    It has the COLUMNS, the source's response and the exact one. `error` is relative, nan unless
-    both rock; `velocity_ratio` is the median, `impact_error` the largest of the first impacts in
-    units of 1/p; `estimate` needs every engine at half its step.
+    It has the source's response and the exact one. `error` is relative, nan unless both rock;
+    `velocity_ratio` is the median, `impact_error` the largest of the first impacts in units of 1/p;
+    kappa and sensitivity are of the exact peak; `estimate` needs every engine at half its step.
     """
     own = yours.options(sources, case.system) if yours else {}
     jobs = [
@@ -81,11 +76,9 @@ def compare(
 
 
 def measure(job: Job) -> Row:
-    """Return the columns that every row has, the median velocity ratio, and the response."""
+    """Return the columns that every row has, and the response."""
     response = ask(job)
-    ratios = [impact.ratio for impact in response.impacts if impact.velocity_before]
-    ratio = median(ratios) if ratios else math.nan
-    return {**summary(response), "velocity_ratio": ratio, "response": response}
+    return {**summary(response), "response": response}
 
 
 def _beside(response: Response, exact: Response, p: float) -> dict[str, float]:
@@ -94,11 +87,13 @@ def _beside(response: Response, exact: Response, p: float) -> dict[str, float]:
         error = _apart(response.slips, exact.slips, math.nan)
     elif response.outcome is Outcome.ROCKED is exact.outcome and exact.peak_ratio > 0.0:
         error = response.peak_ratio / exact.peak_ratio - 1.0
+    ratios = [impact.ratio for impact in response.impacts if impact.velocity_before]
     wanted = [impact.time for impact in exact.impacts[:TIMED_IMPACTS]]
     found = [impact.time for impact in response.impacts[: len(wanted)]]
     if wanted and len(found) == len(wanted):
         late = max(abs(one - other) for one, other in zip(found, wanted, strict=True))
-    return {"error": error, "impact_error": late * p}
+    ratio = median(ratios) if ratios else math.nan
+    return {"error": error, "velocity_ratio": ratio, "impact_error": late * p}
 
 
 def _apart(slips: Sequence[float], right: Sequence[float], otherwise: float) -> float:
@@ -176,13 +171,13 @@ def is_valid(exact: Response) -> bool | None:
 def records(rows: Sequence[Row], note: str = "") -> list[dict[str, Any]]:
     """Return what a reader gets of each row, by name: numbers may be inf or nan.
 
-    The COLUMNS with a note at the end of each message; min_normal, friction_needed and valid of the
-    exact solution; slips [m] and the observables of the scene where there are any.
+    Its columns, with a note at the end of each message; min_normal, friction_needed and valid of
+    the exact solution; slips [m] and the observables of the scene where there are any.
     """
     found: list[dict[str, Any]] = []
     for row in rows:
         exact, response = row["exact"], row["response"]
-        item = {name: row[name] for name in COLUMNS if name in row}
+        item = {name: value for name, value in row.items() if name not in ("exact", "response")}
         item["message"] = "; ".join(filter(None, (item["message"], note)))
         item |= {"min_normal": exact.min_normal, "friction_needed": exact.friction_needed}
         item |= {"slips": list(response.slips)} if response.slips else {}

@@ -13,26 +13,25 @@ from matplotlib.figure import Figure
 from engines.declaration import AT_REST
 from studies.drawing.facets import STRIP, cells, dot, error_scale, key, preset_dots, rows
 from studies.drawing.labels import Name, beside
-from studies.drawing.styles import Style, engine_title, line_of, name_of, style_of, title_of
+from studies.drawing.styles import engine_title, line_of, name_of, style_of, title_of
 from studies.kit.say import out_of, part
 from studies.measures.presets import in_order, is_engine, look_of, preset_of
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wrong_in
 
-OVERTURNED = "overturned"
 TOP, LINE = 1.2, 0.085
 """Upper end of the scale of abs(theta)/theta_cr, and the height of a line in the band above it."""
 FLOOR, CEILING = 1e-8, 1e1
 """Ends of the scale of errors."""
+LEAST, MOST = 1e-6, 1.0
+"""Ends of the colours of errors along the frequency."""
+MARKERS = {FALL: "s", REST: "_", NO_ANSWER: "x"}
+"""Kind of a wrong outcome -> its mark in a strip."""
+ROW, APART = 0.125, 0.76
+"""Height of a preset in a row of an engine [in], and part of the row where presets are spread."""
 
 
 def draw_sweep(rows: pd.DataFrame) -> Figure:
-    """Draw one of figures 6 to 9: the peaks of the smallest width, and the errors of all widths.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        Of one figure, from `studies.measures.differences.with_reference`.
-    """
+    """Draw one of figures 6 to 9: the peaks of the smallest width, and the errors of all widths."""
     first, widths = rows.iloc[0], sorted(rows["width_m"].unique())
     sources = list(rows["source"].unique())
     drawn = rows.sort_values("omega_over_p", kind="stable").assign(
@@ -70,9 +69,13 @@ def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
         line = {"color": style.colour, "linestyle": style.line, "linewidth": style.width}
         look = line if style.line else {**style.points(4.0), "zorder": 4}
         axes.plot(points["omega_over_p"], points["survived"], **look)
-        _beyond_the_scale(axes, points[points["survived"] > TOP], style)
+        beyond = points.loc[points["survived"] > TOP, ["omega_over_p", "survived"]]
+        for x, peak in beyond.itertuples(index=False):
+            axes.plot(x, TOP - 0.04, marker=6, color=style.colour, markersize=6, zorder=5)
+            axes.annotate(f"  {peak:.2f}", (x, TOP - 0.06), color=style.colour, fontsize=7,
+                          va="center")  # fmt: skip
         for outcome, level, mark, size in (
-            (OVERTURNED, _level(number), "s", 2.6),
+            ("overturned", _level(number), "s", 2.6),
             ("failed", 0.02, "*", 6.0),
         ):
             x = points.loc[points["outcome"] == outcome, "omega_over_p"]
@@ -88,12 +91,6 @@ def _level(number: float) -> float:
     return TOP + LINE * (number + 0.7)
 
 
-def _beyond_the_scale(axes: Axes, survivors: pd.DataFrame, style: Style) -> None:
-    for x, peak in zip(survivors["omega_over_p"], survivors["survived"], strict=True):
-        axes.plot(x, TOP - 0.04, marker=6, color=style.colour, markersize=6, zorder=5)
-        axes.annotate(f"  {peak:.2f}", (x, TOP - 0.06), color=style.colour, fontsize=7, va="center")
-
-
 def _errors(axes: Axes, panel: pd.DataFrame, narrowest: float) -> None:
     known = panel[panel["error"].notna() & (panel["source"] != "exact")]
     for (name, width_m), points in known.groupby(["source", "width_m"], sort=False):
@@ -104,37 +101,18 @@ def _errors(axes: Axes, panel: pd.DataFrame, narrowest: float) -> None:
 
 
 def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
-    colours = {source: style_of(source).colour for source in sources}
-    size = 7.5 if len(sources) < 9 else 6.0
-    beside(
-        upper, [Name(name_of(s), 4.1, _level(i), colours[s]) for i, s in enumerate(sources)], size
-    )
+    def name(source: str, x: float, y: float) -> Name:
+        return Name(name_of(source), x, y, style_of(source).colour)
+
     known = panel[panel["error"].notna() & (panel["source"] != "exact")]
     last = known.groupby("source", sort=False)[["omega_over_p", "error"]].last()
-    beside(
-        lower,
-        [Name(name_of(str(s)), x, error, colours[str(s)]) for s, x, error in last.itertuples()],
-    )
-
-
-LEAST, MOST = 1e-6, 1.0
-"""Ends of the colours of errors along the frequency."""
-MARKERS = {FALL: "s", REST: "_", NO_ANSWER: "x"}
-"""Kind of a wrong outcome -> its mark in a strip."""
-ROW = 0.125
-"""Height of a preset in a row of an engine [in]."""
-APART = 0.76
-"""Part of a row over which its presets are spread."""
+    size = 7.5 if len(sources) < 9 else 6.0
+    beside(upper, [name(source, 4.1, _level(n)) for n, source in enumerate(sources)], size)
+    beside(lower, [name(str(source), x, error) for source, x, error in last.itertuples()])
 
 
 def draw_overview(table: pd.DataFrame) -> Figure:
-    """Draw error and run time beside each other: engines as rows, presets as dots.
-
-    Parameters
-    ----------
-    table : DataFrame
-        From `studies.sweep.preset_table`.
-    """
+    """Draw errors and run times of a table of presets: engines as rows, presets as dots."""
     table = table[table["preset"] != AT_REST]  # a variant, which the table has
     engines, presets = list(dict.fromkeys(table["engine"])), in_order(table["preset"])
     size = (8.6, 1.9 + ROW * len(presets) * len(engines))
@@ -169,8 +147,7 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     times.grid(axis="x", alpha=0.25)
     most = {name: part(table.loc[table["preset"] == name, "max"].max()) for name in presets}
     words = [f"by up to {most[name]} {look_of(name).words}" for name in (presets[0], presets[-1])]
-    cases = int(table["cases"].max())
-    head = f"In {cases} cases peaks are off {words[0]},\n{words[1]}"
+    head = f"In {table['cases'].max():.0f} cases peaks are off {words[0]},\n{words[1]}"
     drawing.suptitle(head, fontsize=12)
     key(drawing, preset_dots(presets), 5, fontsize=10, handletextpad=0.2, columnspacing=1.2)
     return drawing
@@ -181,11 +158,6 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
 
     A strip for each engine and preset, a column for each H/B; of widths that similarity makes alike
     a cell holds the largest error, and every mark.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        Of one figure, from `studies.measures.differences.with_reference`.
     """
     rows = rows[rows["source"].map(is_engine)]
     rows = rows.assign(preset=rows["source"].map(preset_of), wrong=wrong_in(rows))
