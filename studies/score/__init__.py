@@ -116,24 +116,29 @@ def measure(job: Job) -> Row:
 
 WHOLE = ("figure", "aspect", "runs", "impacts", "steps")
 """Columns of whole numbers that not every table has."""
-EVER = {EXTREMES: ["error", "energy_growth"], STEPS: ["error", "impact_error", "energy_drift"]}
-"""Columns that a table has though nothing may be known."""
+KNOWN = {
+    SWEEP: ("peak_ratio",),
+    STEPS: ("peak_ratio", "error", "impact_error", "energy_drift"),
+    EXTREMES: ("peak_ratio", "error", "energy_growth", "slip_widths"),
+    MOMENTS: tuple(probes.UNKNOWN),
+}
+"""Columns that a table has though none of its numbers may be known."""
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows of each table, without the columns of others."""
     found: dict[str, pd.DataFrame] = {}
-    for name in map(str, rows["part"].unique()):
-        mine = rows[rows["part"] == name]
-        if name == SCENES:
-            tables = scenes.tabulate(mine)
-            found |= {name: tables[scene] for name, scene in FURTHER.items() if len(tables[scene])}
-            continue
-        missing = mine.isna().all() & rows[rows["part"] != name].notna().any()
-        strange = [it for it in missing.index[missing] if it not in EVER.get(name, ())]
-        own = mine.drop(columns=["part", *strange]).drop(columns="table", errors="ignore")
-        found[name] = own.astype({it: int for it in WHOLE if it in own})
-    return found
+    for name, known in KNOWN.items():
+        mine = rows[rows["part"] == name].drop(columns=["part", "table"], errors="ignore")
+        found[name] = mine[[it for it in mine if it in known or mine[it].notna().any()]]
+    tables = scenes.tabulate(rows[rows["part"] == SCENES].reindex(columns=[*{*rows, "scene"}]))
+    for name, scene in FURTHER.items():
+        if len(held := scenes.built(tables[scene])):
+            found[name] = held
+    return {
+        name: table.astype({it: int for it in WHOLE if it in table})
+        for name, table in found.items()
+    }
 
 
 def swept(tables: Tables) -> pd.DataFrame:
@@ -181,7 +186,12 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
             wrong[["case", "source", "reason", "remedy"]]
         ),
         "The moment of a step at which its velocities hold, of which 1 is the end; by what part a "
-        "block that is let go turns too far, and with half the step": (tables[MOMENTS]),
+        "block that is let go turns too far, and with half the step": tables[MOMENTS],
+        **{
+            f"In the scene of a {scene}": scenes.tabulate(tables[name])[f"{scene}-summary"]
+            for name, scene in FURTHER.items()
+            if name in tables
+        },
     }
 
 

@@ -77,8 +77,8 @@ def test_the_cheapest_setting_holds_with_every_finer_one_and_is_compared_to_the_
 
 
 def test_the_order_is_that_of_the_steps_above_the_floor():
-    steps = np.array([0.1, 0.05, 0.02, 0.01, 1e-3, 1e-4])
-    errors = np.maximum(steps**2, 1e-7) * [1, 1, 1, 1, 0.1, 1.3]  # rounding makes it grow again
+    steps = np.array([0.1, 0.05, 0.02, 0.01, 2e-3, 1e-3, 1e-4])
+    errors = [*steps[:4] ** 2, 2e-8, 1e-8, 1.3e-7]  # rounding makes it grow again
     rows = {"method": "RK4", "value": steps, "median_error": errors, "failed": 0}
     assert observed_order(pd.DataFrame(rows)) == pytest.approx(2.0)
     assert math.isnan(observed_order(pd.DataFrame(rows | {"method": "SciPy RK45"})))
