@@ -69,7 +69,7 @@ def test_quick_asks_a_part_of_every_preset():
 def test_each_table_has_its_rows_with_its_own_columns(few):
     asked = [job for job in few(["mujoco:landing"], True) if job.labels["part"] != EXTREMES]
     tables = STUDY.tabulate(pd.DataFrame(measured(asked, score.measure)))
-    assert {name: len(table) for name, table in tables.items()} == {
+    assert {name: len(table) for name, table in tables.items() if len(table)} == {
         "score-sweep": 2, "score-steps": 2, "score-moments": 1, "score-frame": 1
     }  # fmt: skip
     assert tables[SWEEP]["figure"].dtype == int and "method" not in tables[SWEEP]
