@@ -44,7 +44,7 @@ def table_text(
             *start,
             *([f"base    {note}"] if note else []),
             *_meanings(case, rows[0]["exact"]),
-            "time    of this one run; of many cases each takes less, as its functions are compiled",
+            "time    one interpreted run; a study compiles its functions and takes less a case",
             "",
             _aligned([_cells(case.system, row, degrees) for row in rows]),
             *(f"{row['source']}: {row['message']}" for row in rows if row["message"]),
