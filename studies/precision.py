@@ -5,6 +5,10 @@ from __future__ import annotations
 import functools
 import importlib
 import math
+import os
+import pickle
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -54,7 +58,7 @@ BUDGETS_S = {"full": (0.5, 5.0), "quick": (0.02, 0.15)}
 RUNS = 30
 """Of what the exact solution is timed with in a scene, of which the shortest counts."""
 WORLDS = 20
-"""Scenes built at once, and once more, to see what memory one takes."""
+"""Scenes built at once to see what memory one takes."""
 GRID = np.linspace(0.0, 1.0, 1001)
 """Of a recorded history, over its duration."""
 CASE = HISTORIES[5][1]
@@ -326,15 +330,29 @@ def put_back(job: Job) -> Row:
 
 
 def memory_of(job: Job) -> float:
-    """Return the memory [KiB] of a built scene: what WORLDS take after as many; else nan."""
+    """Return the memory [KiB] of a built scene, by a process whose memory nothing has used."""
+    code = "import pickle, sys; from studies.precision import grown; "
+    code += "print(grown(pickle.load(sys.stdin.buffer)))"
+    path = os.pathsep.join(filter(None, sys.path))
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        input=pickle.dumps(job),
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+    )
+    return float(done.stdout.split()[-1]) if done.returncode == 0 else math.nan
+
+
+def grown(job: Job) -> float:
+    """Return by how much memory [KiB] grows with a built scene; nan where no system tells."""
     status, case = Path("/proc/self/statm"), job.case
     if not status.exists():
         return math.nan
     observed = {"duration": case.duration, "times": case.times}
     scene = scene_of(case.system, case.motion, job.asked.preset, **observed, **job.options)
-    worlds, pages = [], []
-    for _ in range(2):  # the first may take what was used before, and is free again
-        worlds += [build(job.asked.declared, scene) for _ in range(WORLDS)]
+    worlds, pages = [build(job.asked.declared, scene)], []
+    for count in (0, WORLDS):
+        worlds += [build(job.asked.declared, scene) for _ in range(count)]
         pages.append(int(status.read_text().split()[1]))
     for world in worlds:
         world.close()

@@ -104,7 +104,7 @@ def test_a_wrong_outcome_is_an_infinite_error_and_each_table_has_its_rows():
     assert found["Taylor series"].min() < 1e-9 < 1e-3 < found["Taylor series"].max()
     assert tables["precision"]["figure"].dtype == int
     (free,) = tables[SCENES].to_dict("records")
-    assert free["error"] == pytest.approx(0.0, abs=1e-4) and free["memory_kib"] >= 0.0
+    assert free["error"] == pytest.approx(0.0, abs=1e-4) and not free["memory_kib"] < 50.0
     (share,) = tables["shares"].to_dict("records")
     assert 0.0 < share["engine_s"] < 1.0 and share["step_s"] > 0.0
     assert {row["table"] for row in STUDY.needed(rows)} == {"precision"}
