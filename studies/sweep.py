@@ -88,14 +88,18 @@ def finding(tables: Tables) -> str:
     lines = over_all(tables["summary"])
     presets = preset_table(lines)
     if len(presets):
-        best = presets[presets["preset"] == in_order(presets["preset"])[-1]]
-        cases, right = best["cases"].iloc[0], best["right"]
-        engines = f"{len(best)} engines predict" if len(best) > 1 else "one engine predicts"
-        whom = "at least " if right.nunique() > 1 else ""
+        order = in_order(presets["preset"])
+        first, best = (presets[presets["preset"] == order[end]] for end in (0, -1))
+        cases = best["cases"].iloc[0]
+        least = "" if first["right"].min() == cases else "at least "
+        words = f"engines predict {least}{out_of(first['right'].min(), cases)} outcomes"
+        if len(order) == 1:
+            peaks = f", and every peak within {part(best['max'].max())}"
+            return f"{capital(in_words(order[0]))}, {words}{peaks}."
+        right = out_of(best["right"].min(), cases).removesuffix(f" {cases:.0f}")
         return (
-            f"{capital(in_words(str(best['preset'].iloc[0])))}, {engines} {whom}"
-            f"{out_of(right.min(), cases)} outcomes, and every peak within "
-            f"{part(best['max'].max())}."
+            f"{capital(in_words(order[0]))}, {words}; {in_words(order[-1])}, "
+            f"{right.removesuffix(' of')}, and peaks within {part(best['max'].max())}."
         )
     others = lines[lines["source"] != "exact"].sort_values("agree", kind="stable")
     if others.empty:

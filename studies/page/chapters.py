@@ -124,7 +124,7 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
             quick=("--scene", "frame", "--quick"),
             full=("--scene", "frame"),
         ),
-        Part(folder="restitution", name="restitution"),
+        Part(folder="restitution", name="restitution", quick=()),
         Part(
             folder="symptoms",
             name="advise",
@@ -134,7 +134,16 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         ),
     ),
     "Stiff and extreme cases": (Part(folder="stability", name="stability"),),
-    "Overturning": (Part(folder="overturning", name="overturning"),),
+    "Overturning": (
+        Part(folder="overturning", name="overturning"),
+        Part(
+            folder="defaults",
+            name="overturning",
+            title="Where do engines predict a wrong overturning with their default settings?",
+            full=("--planes", "--sources", "engines:naive"),
+            quick=("--planes", "--quick", "--sources", "core:naive"),
+        ),
+    ),
     "Other scenes": (Part(folder="scenes", name="scenes"),),
 }
 """Title of a chapter -> its parts."""

@@ -63,8 +63,7 @@ def test_nothing_is_computed_again_in_a_published_folder(name, tmp_path):
     jobs = sweep.jobs(sources, False, sweep.Options())
     with Store(folder, "sweep", "sweep") as store:
         kept = store.kept({job.key: job for job in jobs}, makers_of(jobs, sweep.STUDY.measure))
-    failed = (pd.read_csv(folder / "sweep.csv")["outcome"] == "failed").sum()
-    assert len(kept) == len(jobs) - failed
+    assert len(kept) == len(jobs)
     assert part.study is sweep.STUDY
 
 
@@ -111,7 +110,11 @@ def test_edges_of_the_overturning_map_are_where_they_were():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.folder)
+@pytest.mark.parametrize(
+    "part",  # the samples of histories are not published: its command takes a second
+    [part for part in PARTS if part.folder != "histories"],
+    ids=lambda part: part.folder,
+)
 def test_a_published_picture_is_what_its_tables_draw_today(part, tmp_path):
     folder = PUBLISHED / part.folder
     save_all(dict(part.study.figures(part.study.read(folder))), tmp_path)
