@@ -17,7 +17,7 @@ from studies.drawing.styles import LOWEST, Style, engine_style, title_of
 from studies.kit.say import duration, listed
 from studies.measures.finer import joint
 from studies.measures.presets import look_of
-from studies.precision import EXACT, engines_of, exact_cost
+from studies.precision import EXACT, costs_of, engines_of, exact_cost
 from studies.precision import title_of as called
 
 STYLES = {
@@ -141,11 +141,11 @@ def draw_scenes(scenes: pd.DataFrame) -> Figure:
     names, engines = list(scenes["scene"].unique()), list(scenes["engine"].unique())
     drawing = Figure(figsize=(9.6, 1.6 + 0.4 * len(names)), layout="constrained")
     costs, errors = drawing.subplots(1, 2, sharey=True)
+    scenes = scenes.assign(cost=costs_of(scenes).where(scenes["error"].notna()))
     for place, engine in enumerate(engines):
         rows = scenes[scenes["engine"] == engine].set_index("scene").reindex(names)
         levels = np.arange(len(names)) + 0.7 * ((place + 0.5) / len(engines) - 0.5)
-        taken = rows["wall_s"].where(rows["error"].notna())  # what an engine has not takes no time
-        factor, look = taken / taken.iloc[0], engine_style(engine, "").points(6.5)
+        factor, look = rows["cost"], engine_style(engine, "").points(6.5)
         costs.hlines(levels, 1.0, factor, color=look["color"], linewidth=1.2)
         costs.plot(factor, levels, **look)
         errors.plot(rows["error"].abs().clip(lower=LOWEST), levels, **look, label=title_of(engine))

@@ -42,20 +42,39 @@ def enough(times: Sequence[float], spent_s: float, most_s: float) -> bool:
 
 
 def best_of(action: Callable[[], Response], most_s: float) -> tuple[Response, int]:
-    """Return the response with the shortest run time and the shortest set-up time, and the runs.
+    """Return the response with the shortest run time and the shortest set-up time, and the runs."""
+    return best_of_each([action], most_s)[0]
+
+
+def best_of_each(
+    actions: Sequence[Callable[[], Response]], most_s: float
+) -> list[tuple[Response, int]]:
+    """Return the same of several actions that are run in turn until the time of each is known.
+
+    What else a machine does for a while meets them all alike.
 
     Parameters
     ----------
-    action : callable
-        Returns a response with its run time; repeated until `enough`.
+    actions : sequence of callable
+        Each returns a response with its run time; repeated until `enough`.
     most_s : float
-        Time [s] after which there is no further run.
+        Time [s] spent at most on each, in the mean.
     """
-    began, runs = perf_counter(), [action()]
-    while not enough([run.wall_s for run in runs], perf_counter() - began, most_s):
-        runs.append(action())
-    best = min(runs, key=lambda run: run.wall_s)
-    return replace(best, setup_s=min(run.setup_s for run in runs)), len(runs)
+    began, rounds, known = perf_counter(), list[list[Response]](), False
+    while not known:
+        rounds.append([action() for action in actions])
+        spent_s = (perf_counter() - began) / len(actions)
+        runs = [*zip(*rounds, strict=True)]
+        known = all(enough([run.wall_s for run in of_one], spent_s, most_s) for of_one in runs)
+    return [
+        (
+            replace(
+                min(of_one, key=lambda run: run.wall_s), setup_s=min(r.setup_s for r in of_one)
+            ),
+            len(of_one),
+        )
+        for of_one in runs
+    ]
 
 
 def cost_text(wall_s: float, runs: float, each: str = "") -> str:
