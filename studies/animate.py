@@ -17,10 +17,11 @@ from analytic.slide import SlidingBlock
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import Place, Positive, Sources, check_writable, refuse_given, required
+from studies.kit.cluster import place_of
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.options import Computing, Yours
 from studies.kit.run import Place as Where
-from studies.kit.run import exit_code, here, place_of, run
+from studies.kit.run import exit_code, here, run
 from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless
 from studies.kit.store import check
 from studies.sources.registry import core_sources

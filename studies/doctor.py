@@ -15,10 +15,10 @@ from engines.declaration import UNTUNED
 from engines.parts.compiled import PACKAGE
 from studies.cases.paper import HISTORIES
 from studies.kit.arguments import TimeLimit
+from studies.kit.cluster import place_of
 from studies.kit.identity import COMPUTING, version_of
 from studies.kit.jobs import Job, Question, Row, answer
 from studies.kit.options import Computing
-from studies.kit.run import place_of
 from studies.kit.say import part
 from studies.kit.store import project_version, usable_cores
 from studies.sources.registry import Source

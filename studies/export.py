@@ -19,10 +19,11 @@ from engines.watching.sliding import LEAST_SLIP, SLIP_RATE
 from studies.cases.paper import free_rocking_window
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import Place, Step, TimeLimit, refuse_both, refuse_given
+from studies.kit.cluster import place_of
 from studies.kit.identity import version_of
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.options import Computing, Yours
-from studies.kit.run import exit_code, place_of, run
+from studies.kit.run import exit_code, run
 from studies.kit.say import listed
 from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless
 from studies.kit.store import project_version

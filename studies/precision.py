@@ -40,11 +40,19 @@ from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.options import Running
 from studies.kit.say import duration, part
 from studies.kit.study import Study, Tables
-from studies.measures.costs import STEPPED, best_of, best_of_each
+from studies.measures.costs import (
+    EXACT,
+    STEPPED,
+    best_of,
+    best_of_each,
+    costs_of,
+    exact_cost,
+    method_title,
+)
 from studies.measures.differences import posed_cases
 from studies.measures.energy import SAMPLES, energy_drift
 from studies.measures.finer import cheapest_below, joint
-from studies.measures.presets import engine_of, look_of, uses_of
+from studies.measures.presets import engine_of, uses_of
 from studies.measures.published import TARGETS
 from studies.sources.registry import core_sources, scene_of
 
@@ -65,8 +73,6 @@ CASE = HISTORIES[5][1]
 """Figure 5-b, of which scenes are timed: one impact before the peak, κ about 5."""
 TYPICAL, NEAR, ALL = "typical", "near overturning", "all"
 """The sets of cases, and both together."""
-EXACT = "Taylor series"
-"""The method to whose time the others are compared."""
 FINE_TARGETS = (*TARGETS[1:], 1e-6)
 """Errors that are asked of every method."""
 TOLERANCES = tuple(10.0**-n for n in range(2, 13))
@@ -427,13 +433,6 @@ def engines_of(table: pd.DataFrame) -> pd.DataFrame:
     return table[table["method"].isin(along)]
 
 
-def exact_cost(lines: pd.DataFrame) -> float:
-    """Return the mean time [s] of a case by the exact solution at its tightest; nan without it."""
-    exact = lines[lines["method"] == EXACT]
-    tight = exact[exact["value"] == exact["value"].min()]
-    return float((tight["wall_s"] * tight["cases"]).sum() / (tight["cases"].sum() or math.nan))
-
-
 def choices(table: pd.DataFrame) -> dict[tuple[float, str], dict[str, Any]]:
     """Return the cheapest setting of an engine below each target, on typical cases and on all.
 
@@ -503,15 +502,6 @@ def observed_order(line: pd.DataFrame) -> float:
     return float(np.polyfit(np.log(line["value"][used]), np.log(error[used]), 1)[0])
 
 
-def title_of(method: str) -> str:
-    """Return how a method is called beside others: an engine by its title, with its preset."""
-    engine, _, varied = method.partition(" ")
-    if engine not in ENGINES:
-        return method
-    preset, comma, dial = varied.partition(", ")
-    return f"{ENGINES[engine].title}, {look_of(preset).short}{comma}{dial}"
-
-
 def finding(tables: Tables) -> str:
     """Say with which engine the smallest error is cheapest, and how much the exact one costs."""
     table = tables["work-precision"]
@@ -526,8 +516,8 @@ def finding(tables: Tables) -> str:
     if exact > 0.0:
         over = f", {best['over_exact']:.3g} times as long as the exact solution takes"
     return (
-        f"{title_of(best['method'])}, predicts every {'typical ' * (asked == TYPICAL)}peak within "
-        f"{part(target)} in {duration(best['wall_s'])} a case{over}."
+        f"{method_title(best['method'])}, predicts every {'typical ' * (asked == TYPICAL)}peak "
+        f"within {part(target)} in {duration(best['wall_s'])} a case{over}."
     )
 
 
@@ -561,12 +551,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         ),
     }
     return {title: table for title, table in found.items() if len(table)}
-
-
-def costs_of(scenes: pd.DataFrame) -> pd.Series[float]:
-    """Return the run times over those of the scene as it is, timed in turn where a table says."""
-    first = scenes.groupby("engine")["wall_s"].transform("first")
-    return scenes["wall_s"] / scenes.get("plain_s", first)
 
 
 def figures(tables: Tables) -> Mapping[str, Figure]:

@@ -22,9 +22,10 @@ from studies.kit.arguments import (
     refuse_given,
     required,
 )
+from studies.kit.cluster import place_of
 from studies.kit.jobs import Question, Row
 from studies.kit.options import Computing, EffortOptions, Yours
-from studies.kit.run import exit_code, place_of
+from studies.kit.run import exit_code
 from studies.kit.say import say
 from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless, unusual
 from studies.sources.registry import core_sources
@@ -112,7 +113,8 @@ def as_lines(rows: Sequence[Row]) -> str:
 
 def draw(case: Question, rows: Sequence[Row], path: Path) -> None:
     """Draw the histories of the rows over each other; nothing where no row has one."""
-    from studies.drawing.figures import draw_histories, save
+    from studies.drawing.figures import draw_histories
+    from studies.kit.pictures import save
     from studies.measures.samples import samples
 
     system, motion = case.system, case.motion

@@ -1,26 +1,18 @@
-"""Time histories over each other, and how a figure is written to a file."""
+"""Time histories over each other."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from PIL import Image
 
 from studies.drawing.styles import LOWEST, line_of, name_of, style_of
-from studies.kit.tables import draft
 
 OVERTURNED = "overturned"
-DPI, COLOURS = 130, 256
-"""Points of a picture to the inch, and its colours, the nearest to those that it was drawn in."""
 
 
 def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -> Figure:
@@ -110,43 +102,3 @@ def _draw_errors(axes: Axes, panel: pd.DataFrame) -> None:
         axes.plot(worst.index, worst.clip(lower=LOWEST), line_of(source), color=colour)
     axes.set(yscale="log", ylabel="distance from\nexact  [θcr]", xlim=(0.0, found.index.max()))
     axes.grid(alpha=0.25)
-
-
-def lay_out(drawing: Figure) -> None:
-    """Give the panels of a figure their places for good.
-
-    As long as a figure has a layout to find, matplotlib draws it twice to write it once.
-    """
-    if layout := drawing.get_layout_engine():
-        layout.execute(drawing)
-        drawing.set_layout_engine(None)
-
-
-def save(drawing: Figure, path: Path) -> None:
-    """Write a figure in one piece, in the format of the file's suffix; its layout is then fixed."""
-    drawing.set_dpi(DPI)
-    lay_out(drawing)
-    with draft(path) as part, part.open("wb") as file:
-        if path.suffix == ".png":
-            write_points(drawing, file)
-        else:
-            drawing.savefig(file, format=path.suffix[1:], dpi=DPI)
-
-
-def write_points(drawing: Figure, file: BinaryIO) -> None:
-    """Write a figure that has its layout as a PNG with COLOURS colours."""
-    drawing.set_dpi(DPI)
-    canvas = FigureCanvasAgg(drawing)
-    canvas.draw()
-    # a palette of its own makes a picture a third as large
-    whole = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-    few = whole.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE)
-    few.save(file, "png", optimize=True, dpi=(DPI, DPI))
-
-
-def save_all(drawings: Mapping[str, Figure], folder: Path) -> list[Path]:
-    """Write the figures of a study under their names into its folder; return the files."""
-    paths = [folder / f"{name}.png" for name in drawings]
-    for drawing, path in zip(drawings.values(), paths, strict=True):
-        save(drawing, path)
-    return paths

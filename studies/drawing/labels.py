@@ -16,7 +16,7 @@ from scipy.optimize import isotonic_regression
 from textalloc import allocate
 
 from analytic.motion import FloatArray
-from studies.drawing.figures import lay_out
+from studies.kit.pictures import lay_out
 
 LINE_HEIGHT = 1.25
 """Distance of two names over the size of their letters."""

@@ -15,10 +15,9 @@ from studies.drawing.facets import error_scale, strip_beyond
 from studies.drawing.labels import Name, around, beside
 from studies.drawing.styles import LOWEST, Style, engine_style, title_of
 from studies.kit.say import duration, listed
+from studies.measures.costs import EXACT, costs_of, exact_cost, method_title
 from studies.measures.finer import joint
 from studies.measures.presets import look_of
-from studies.precision import EXACT, costs_of, engines_of, exact_cost
-from studies.precision import title_of as called
 
 STYLES = {
     EXACT: Style("#000000", "-", "o", 2.2),
@@ -173,7 +172,7 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
     drawing = Figure(figsize=(9.0, 5.4), layout="constrained")
     axes = drawing.subplots()
     axes.set(xscale="log", yscale="log", ylim=(1e-8, TOP))
-    mine, others = joint(along), joint(engines_of(published))
+    mine, others = joint(along), joint(published)
     others = others[~others["method"].isin(mine["method"])]
     best = {f"{name} {engine.best.name}" for name, engine in ENGINES.items()}
     behind, names = Style(GREY, "-", ".", 0.9), []
@@ -188,10 +187,10 @@ def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
             colour = "#777777" if lines is others else style.colour
             if lines is mine or name in best:
                 at = float(line["wall_s"].iloc[last]), float(error.iloc[last])
-                names.append(Name(called(str(name)), *at, colour))
+                names.append(Name(method_title(str(name)), *at, colour))
     words = "a failure or a wrong outcome"
     if untimed := sorted(set(mine["method"]) - set(mine.loc[mine["wall_s"] > 0.0, "method"])):
-        words += f"; without a run time: {listed(map(called, untimed))}"
+        words += f"; without a run time: {listed(map(method_title, untimed))}"
     strip_beyond(axes, EDGE, "")
     axes.text(0.01, 0.985, words, va="top", fontsize=8, color="#666666", transform=axes.transAxes)
     axes.set_xlabel("run time of a case, set-up apart  [s]")

@@ -4,19 +4,25 @@ Dask is imported only here, and only when a cluster is named. A worker must have
 which it could start no process: dask worker ADDRESS --no-nanny --nthreads 1.
 """
 
+from __future__ import annotations
+
 import multiprocessing
 import socket
 from collections.abc import Sequence
+from functools import partial
 from queue import Empty, SimpleQueue
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from analytic.response import Response
 from studies.cases.refusal import BadInputError
 from studies.kit.identity import Maker, maker_of
 from studies.kit.jobs import Job
-from studies.kit.run import Measure, Rows, local, lost_row, makers_of
+from studies.kit.run import Measure, Place, Rows, local, lost_row, makers_of
 from studies.sources.registry import resolve
+
+if TYPE_CHECKING:
+    from studies.kit.options import Computing
 
 CONNECT_S, ALONE_S = 10.0, 60.0
 """How long to wait for the scheduler and a first worker, and for one when all have died [s]."""
@@ -99,3 +105,10 @@ def _rows_of(task: Any, part: Sequence[tuple[int, Job]], measure: Measure) -> Ro
         return
     words = f"every worker that ran this case died: {task.exception()}"
     yield from ((n, lost_row(measure, job, Response.failure(words))) for n, job in part)
+
+
+def place_of(running: Computing, *, at_once: bool = False) -> Place:
+    """Return where the options let jobs run; `at_once` as for `studies.kit.run.local`."""
+    if running.cluster is None:
+        return partial(local, workers=running.workers, limit_s=running.time_limit, at_once=at_once)
+    return partial(on_cluster, running.cluster, running.time_limit)

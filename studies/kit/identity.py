@@ -83,7 +83,8 @@ def files_of(module: str) -> frozenset[Path]:
             continue
         found.add(file)
         for node in ast.parse(file.read_bytes()).body:
-            name = node.module or "" if isinstance(node, ast.ImportFrom) else ""
+            if not isinstance(node, ast.ImportFrom) or not (name := node.module or ""):
+                continue
             if name.startswith("studies.") and name.split(".")[1] not in ASIDE:
                 pending += [name, *(f"{name}.{each.name}" for each in node.names)]
     return frozenset(found)

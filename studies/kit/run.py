@@ -7,10 +7,9 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
-from functools import partial
 from math import tan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
@@ -27,9 +26,6 @@ from studies.kit.jobs import Job, Row, ask, unanswered
 from studies.kit.say import say
 from studies.kit.store import Store
 from studies.kit.workers import MEMORY_BYTES, Lost, answers
-
-if TYPE_CHECKING:
-    from studies.kit.options import Computing  # it loads the parser, which workers do without
 
 FEW = 32
 """Jobs up to which to interpret takes less time than to load what is compiled."""
@@ -174,15 +170,6 @@ def _compile_for(jobs: Sequence[Job]) -> None:
 def _call(call: Callable[..., Any], *given: Any) -> None:
     compile_all()  # a short job would be interpreted, and the first long one compile in its time
     call(*given)
-
-
-def place_of(running: Computing, *, at_once: bool = False) -> Place:
-    """Return where the options let jobs run; `at_once` as for `local`."""
-    if running.cluster is None:
-        return partial(local, workers=running.workers, limit_s=running.time_limit, at_once=at_once)
-    from studies.kit.cluster import on_cluster  # asyncio takes a tenth of a second to load
-
-    return partial(on_cluster, running.cluster, running.time_limit)
 
 
 def run(

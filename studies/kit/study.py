@@ -12,9 +12,10 @@ import pandas as pd
 from cyclopts import Parameter
 
 from studies.kit.arguments import Out, sources_option
+from studies.kit.cluster import place_of
 from studies.kit.jobs import Job, Row, answer
 from studies.kit.options import Running
-from studies.kit.run import exit_code, makers_of, place_of, run
+from studies.kit.run import exit_code, makers_of, run
 from studies.kit.say import as_text
 from studies.kit.store import Store
 from studies.kit.tables import read_table, tables_of, write_text
@@ -171,7 +172,7 @@ class Study:
         """Draw the figures of a folder and write its finding, from its tables; return the text."""
         tables = self.read(folder)
         if drawn := self.figures(tables):
-            from studies.drawing.figures import save_all
+            from studies.kit.pictures import save_all
 
             save_all(dict(drawn), folder)
         text = as_text(self.finding(tables), self.shown(tables))

@@ -1,12 +1,18 @@
 """What a run costs: its time, as the best of so many runs that it is known, and that in words."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from time import perf_counter
 
+import pandas as pd
+
 from analytic.response import Response
+from engines import ENGINES
 from studies.kit.say import duration
+from studies.measures.presets import look_of
 
 LEAST_RUNS = 5
 """A time is of the best of so many runs at least, or marked."""
@@ -21,6 +27,9 @@ OUTDATED = (
     "compiled loop, shorter than today's."
 )
 """Said beside them until they are measured again."""
+
+EXACT = "Taylor series"
+"""The method to whose time the others are compared."""
 
 
 def enough(times: Sequence[float], spent_s: float, most_s: float) -> bool:
@@ -93,3 +102,25 @@ def cost_text(wall_s: float, runs: float, each: str = "") -> str:
         return "-"
     few = f" ({runs:.0f} run{'s' if runs != 1 else ''})" if runs < LEAST_RUNS else ""
     return f"{duration(wall_s)}{each}{few}"
+
+
+def exact_cost(lines: pd.DataFrame) -> float:
+    """Return the mean time [s] of a case by the exact solution at its tightest; nan without it."""
+    exact = lines[lines["method"] == EXACT]
+    tight = exact[exact["value"] == exact["value"].min()]
+    return float((tight["wall_s"] * tight["cases"]).sum() / (tight["cases"].sum() or math.nan))
+
+
+def method_title(method: str) -> str:
+    """Return how a method is called beside others: an engine by its title, with its preset."""
+    engine, _, varied = method.partition(" ")
+    if engine not in ENGINES:
+        return method
+    preset, comma, dial = varied.partition(", ")
+    return f"{ENGINES[engine].title}, {look_of(preset).short}{comma}{dial}"
+
+
+def costs_of(scenes: pd.DataFrame) -> pd.Series[float]:
+    """Return the run times over those of the scene as it is, timed in turn where a table says."""
+    first = scenes.groupby("engine")["wall_s"].transform("first")
+    return scenes["wall_s"] / scenes.get("plain_s", first)

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from engines import ENGINES
 from studies.cases.paper import PULSES
-from studies.drawing.figures import lay_out, write_points
+from studies.kit.pictures import lay_out, write_points
 from studies.kit.say import SMALL, part
 from studies.kit.store import engines_of, provenance_of
 from studies.kit.tables import table_in, write_text

@@ -55,7 +55,7 @@ def command(*, root: Path = Path()) -> int:
         The project's folder.
     """
     from studies.drawing.block import draw_block, draw_hero
-    from studies.drawing.figures import save_all
+    from studies.kit.pictures import save_all
 
     published, folder = root / PUBLISHED, root / PUBLISHED / "hero"
     if not published.is_dir():

@@ -202,7 +202,7 @@ def figures(tables: Tables) -> Mapping[str, Figure]:
 
     along = precision.work_precision(tables[STEPS])
     return {
-        "score": draw_score(along, published()),
+        "score": draw_score(along, precision.engines_of(published())),
         "extremes": draw_matrix(tables[EXTREMES], "Extreme cases"),
     }
 

@@ -15,7 +15,7 @@ from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from engines.disclosure import Deviation
 from studies import respond
-from studies.old.jobs import Job
+from studies.kit.jobs import Job, Question
 from studies.sources.registry import SOURCES
 
 WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])
@@ -64,9 +64,8 @@ def test_a_jobs_identity_knows_every_sample_and_stays_short():
     samples = np.random.default_rng(1).normal(size=20_000)
 
     def key(dt=0.01):
-        return Job(
-            labels={}, block=BLOCK, motion=Record(dt=dt, samples=samples), source="exact"
-        ).key
+        case = Question(system=BLOCK, motion=Record(dt=dt, samples=samples))
+        return Job(labels={}, case=case, source="exact").key
 
     keys = [key(), key(), key(0.02)]
     samples[19_999] = np.nextafter(samples[19_999], 9.0)

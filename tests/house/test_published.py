@@ -13,7 +13,7 @@ from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, sim
 from engines import ENGINES, installed_engines
 from studies import respond, sweep
 from studies.cases.paper import Case
-from studies.drawing.figures import save_all
+from studies.kit.pictures import save_all
 from studies.kit.run import makers_of
 from studies.kit.store import Store, provenance_of
 from studies.linearizations import errors_on, line

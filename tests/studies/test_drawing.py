@@ -13,7 +13,6 @@ from matplotlib.text import Text
 from engines import ENGINES
 from studies import contact
 from studies.drawing.contact import MATTER, draw_contact
-from studies.drawing.figures import lay_out
 from studies.drawing.labels import Name, around, spread
 from studies.drawing.linearizations import ONSETS
 from studies.drawing.overturning import VERDICTS
@@ -25,6 +24,7 @@ from studies.drawing.styles import (
     look_at,
     title_of,
 )
+from studies.kit.pictures import lay_out
 from studies.measures.presets import PRESETS, in_order, look_of
 from studies.measures.published import PUBLISHED
 

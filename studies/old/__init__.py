@@ -1,1 +1,0 @@
-"""A study's machinery: jobs, runner, executors, journal, provenance, the command line's pieces."""
