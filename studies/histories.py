@@ -103,8 +103,7 @@ def finding(tables: Tables) -> str:
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     """Return the paper's statements, and the largest rotation of each line."""
-    columns = ["figure", "panel", "source", "outcome", "peak_ratio"]
-    peaks = tables.get("histories", pd.DataFrame()).reindex(columns=columns)
+    peaks = tables["histories"][["figure", "panel", "source", "outcome", "peak_ratio"]]
     return {"The paper's statements": tables["findings"], "Largest rotations": peaks}
 
 

@@ -138,27 +138,13 @@ PAPER_PAIR = ("housner", "modified")
 MODELS = ("exact", *PAPER_PAIR, "onset-matched")
 
 
-def findings(compared: pd.DataFrame) -> list[Finding]:
-    """Test every conclusion of the paper, and what else a sweep has to show.
-
-    Parameters
-    ----------
-    compared : DataFrame
-        From `studies.measures.differences.with_reference`.
-    """
-    tested = [test(compared) for test in CONCLUSIONS]
-    return [*tested, *outcomes_agree(compared), *panels_coincide(compared)]
-
-
 @claim("Housner's linearization overturns blocks that survive, even at H/B = 3", "housner")
 def false_overturnings(compared: pd.DataFrame) -> tuple[bool, str]:
     """Count the falsely overturned, and look for them at H/B = 3."""
     housner = _of(compared, "housner")
     wrong = housner[housner["false_overturning"]]
-    return (
-        bool((wrong["aspect"] >= 3).any()),
-        f"{len(wrong)} of {len(housner)} cases{_where(wrong)}",
-    )
+    words = f"{len(wrong)} of {len(housner)} cases{_where(wrong)}"
+    return bool((wrong["aspect"] >= 3).any()), words
 
 
 @claim("The modified linearization never lets a block survive that overturns", "modified")
@@ -166,52 +152,45 @@ def missed_overturnings(compared: pd.DataFrame) -> tuple[bool, str]:
     """Count the overturnings that are missed."""
     modified = _of(compared, "modified")
     wrong = modified[modified["missed_overturning"]]
-    return (
-        wrong.empty,
-        f"{len(wrong)} of {len(modified)} cases missed{_where(wrong)}",
-    )
+    return wrong.empty, f"{len(wrong)} of {len(modified)} cases missed{_where(wrong)}"
 
 
 @claim("The modified linearization stays closer to the exact solution than Housner's", *PAPER_PAIR)
 def modified_is_closer(compared: pd.DataFrame) -> tuple[bool, str]:
     """Compare the errors of both linearizations over what survives in both."""
-    housner, modified = (_by_case(_of(compared, name)) for name in PAPER_PAIR)
-    both = pd.DataFrame({"h": housner["error"].abs(), "m": modified["error"].abs()}).dropna()
-    closer = int((both["m"] < both["h"]).sum())
+    housner, modified, both = _beside_housner(compared, "modified")
+    closer = int((both["other"] < both["housner"]).sum())
+    h, m = both.quantile([0.5, 0.9]).T.to_numpy()
     return (
-        bool(both["m"].median() < both["h"].median() and closer > len(both) / 2),
+        bool(m[0] < h[0] and closer > len(both) / 2),
         f"closer in {closer} of {len(both)} cases where all three survive; median error "
-        f"{both['m'].median():.2%} against {both['h'].median():.2%}, p90 "
-        f"{both['m'].quantile(0.9):.2%} against {both['h'].quantile(0.9):.2%}; outcomes right in "
-        f"{int(modified['agrees'].sum())} against {int(housner['agrees'].sum())} "
-        f"of {len(housner)} cases",
+        f"{m[0]:.2%} against {h[0]:.2%}, p90 {m[1]:.2%} against {h[1]:.2%}; outcomes right in "
+        f"{modified['agrees'].sum()} against {housner['agrees'].sum()} of {len(housner)} cases",
     )
 
 
-@claim(
-    "Both linearizations come close at high frequency (median error below 5 %, ω/p ≥ 3)",
-    *PAPER_PAIR,
-)
+NEAR = "Both linearizations come close at high frequency (median error below 5 %, ω/p ≥ 3)"
+SQUAT = "The smaller the aspect ratio, the larger Housner's error in the median of its figure"
+ONSET = "Most of Housner's error is its onset, gα instead of g tan α, not its restoring moment"
+
+
+@claim(NEAR, *PAPER_PAIR)
 def agreement_at_high_frequency(compared: pd.DataFrame) -> tuple[bool, str]:
     """Look at the errors at high and at middle frequencies."""
     medians, words = [], []
     for name in PAPER_PAIR:
         rows = _of(compared, name)
-        high = rows.loc[rows["omega_over_p"] >= 3.0, "error"].abs()
-        middle = rows.loc[rows["omega_over_p"].between(0.5, 1.5), "error"].abs()
-        medians.append(high.median())
-        apart = rows.loc[rows["omega_over_p"] >= 3.0, "difference"].abs().median()
+        sizes = rows[["error", "difference"]].abs()
+        high, apart = sizes[rows["omega_over_p"] >= 3.0].median()
+        middle = sizes.loc[rows["omega_over_p"].between(0.5, 1.5), "error"].median()
+        medians.append(high)
         words.append(
-            f"{name} {high.median():.2%}, that is {apart:.4f} of θcr "
-            f"(at ω/p from 0.5 to 1.5: {middle.median():.2%})"
+            f"{name} {high:.2%}, that is {apart:.4f} of θcr (at ω/p from 0.5 to 1.5: {middle:.2%})"
         )
-    return (max(medians) < 0.05, "; ".join(words))
+    return max(medians) < 0.05, "; ".join(words)
 
 
-@claim(
-    "The smaller the aspect ratio, the larger Housner's error in the median of its figure",
-    "housner",
-)
+@claim(SQUAT, "housner")
 def squat_blocks_differ_more(compared: pd.DataFrame) -> tuple[bool, str]:
     """Look whether the median errors fall as blocks become slender."""
     housner = _of(compared, "housner")
@@ -223,35 +202,27 @@ def squat_blocks_differ_more(compared: pd.DataFrame) -> tuple[bool, str]:
         + ", ".join(f"{value:.2%} at {aspect:g}" for aspect, value in row.items())
         for figure, row in table.iterrows()
     ]
-    return (falling, "; ".join(words))
+    return falling, "; ".join(words)
 
 
-@claim(
-    "Most of Housner's error is its onset, gα instead of g tan α, not its restoring moment",
-    "housner",
-    "onset-matched",
-)
+@claim(ONSET, "housner", "onset-matched")
 def onset_explains(compared: pd.DataFrame) -> tuple[bool, str]:
     """See how much of the error is left where the onset is matched."""
-    housner, matched = (_by_case(_of(compared, name)) for name in ("housner", "onset-matched"))
-    both = pd.DataFrame({"h": housner["error"].abs(), "o": matched["error"].abs()}).dropna()
-    explained = 1.0 - both["o"].median() / both["h"].median()
+    housner, matched, both = _beside_housner(compared, "onset-matched")
+    h, o = both.median()
+    explained = 1.0 - o / h
     wrong_h, wrong_o = (int((~rows["agrees"]).sum()) for rows in (housner, matched))
     return (
         bool(explained > 0.5 and wrong_o <= wrong_h / 2),
-        f"with the onset matched the median error falls from {both['h'].median():.2%} to "
-        f"{both['o'].median():.2%} ({explained:.0%} of it), wrong outcomes from {wrong_h} to "
-        f"{wrong_o} (of {len(housner)} cases)",
+        f"with the onset matched the median error falls from {h:.2%} to {o:.2%} "
+        f"({explained:.0%} of it), wrong outcomes from {wrong_h} to {wrong_o} "
+        f"(of {len(housner)} cases)",
     )
 
 
 CONCLUSIONS = (
-    false_overturnings,
-    missed_overturnings,
-    modified_is_closer,
-    agreement_at_high_frequency,
-    squat_blocks_differ_more,
-    onset_explains,
+    *(false_overturnings, missed_overturnings, modified_is_closer),
+    *(agreement_at_high_frequency, squat_blocks_differ_more, onset_explains),
 )
 """The paper's conclusions, and what explains them."""
 
@@ -259,16 +230,13 @@ CONCLUSIONS = (
 def outcomes_agree(compared: pd.DataFrame) -> list[Finding]:
     """Say for every solver and engine whether, and where not, its outcomes are the exact ones."""
     others = compared[~compared["source"].isin(MODELS)]
-    return [
-        Finding(
-            "every outcome is that of the exact solution",
-            bool(rows["agrees"].all()),
-            f"{int((~rows['agrees']).sum())} of {len(rows)} cases differ"
-            f"{_where(rows[~rows['agrees']])}",
-            str(source),
-        )
-        for source, rows in others.groupby("source", sort=False)
-    ]
+    result = []
+    for source, rows in others.groupby("source", sort=False):
+        wrong = rows[~rows["agrees"]]
+        words = f"{len(wrong)} of {len(rows)} cases differ{_where(wrong)}"
+        statement = "every outcome is that of the exact solution"
+        result.append(Finding(statement, wrong.empty, words, str(source)))
+    return result
 
 
 def panels_coincide(compared: pd.DataFrame) -> list[Finding]:
@@ -280,15 +248,11 @@ def panels_coincide(compared: pd.DataFrame) -> list[Finding]:
         outcomes = rows.pivot(index=keys, columns="width_m", values="outcome")
         spread = (peaks.max(axis=1) / peaks.min(axis=1) - 1.0).max()
         differing = int(outcomes.ne(outcomes.iloc[:, 0], axis=0).any(axis=1).sum())
-        result.append(
-            Finding(
-                "the left and right panels coincide within 10⁻⁶",
-                bool(spread < 1e-6 and differing == 0),
-                f"largest relative difference of the peaks {spread:.1e}, "
-                f"{differing} of {len(outcomes)} outcomes differ",
-                str(source),
-            )
-        )
+        words = f"largest relative difference of the peaks {spread:.1e}, "
+        words += f"{differing} of {len(outcomes)} outcomes differ"
+        holds = bool(spread < 1e-6 and differing == 0)
+        statement = "the left and right panels coincide within 10⁻⁶"
+        result.append(Finding(statement, holds, words, str(source)))
     return result
 
 
@@ -296,8 +260,14 @@ def _of(compared: pd.DataFrame, source: str) -> pd.DataFrame:
     return compared[compared["source"] == source]
 
 
-def _by_case(rows: pd.DataFrame) -> pd.DataFrame:
-    return rows.set_index(["figure", "aspect", "width_m", "omega_over_p"])
+def _beside_housner(
+    compared: pd.DataFrame, other: str
+) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
+    """Return the rows of two linearizations, and the sizes of their errors where both survive."""
+    case = ["figure", "aspect", "width_m", "omega_over_p"]
+    housner, theirs = (_of(compared, name).set_index(case) for name in ("housner", other))
+    both = {"housner": housner["error"].abs(), "other": theirs["error"].abs()}
+    return housner, theirs, pd.DataFrame(both).dropna()
 
 
 def _where(wrong: pd.DataFrame) -> str:
@@ -316,9 +286,8 @@ def _ranges(values: Iterable[float]) -> str:
             runs[-1].append(tenth)
         else:
             runs.append([tenth])
-    return ", ".join(
-        f"{run[0] / 10:g}" if len(run) == 1 else f"{run[0] / 10:g}–{run[-1] / 10:g}" for run in runs
-    )
+    ends = (dict.fromkeys((run[0], run[-1])) for run in runs)
+    return ", ".join("–".join(f"{tenth / 10:g}" for tenth in end) for end in ends)
 
 
 STUDY = Study(

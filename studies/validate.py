@@ -32,7 +32,7 @@ from studies.measures.halving import (
     CALIBRATE,
     MOST_TRUSTED,
     TEST,
-    estimates_of,
+    estimate_of,
     factors,
     halved,
 )
@@ -191,15 +191,10 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     if "half" in rows:
         lines = beside_errors(rows)
         return {"estimate": rows, "estimates": lines, "factors": factors(lines)}
-    errors = _compared(rows.drop(columns="seed"))
+    errors = differences.with_reference(rows.drop(columns="seed"))
     scene: Drawn = "frame" if "load" in rows else "block"
     left = census(int(rows["seed"].iloc[0]), rows["case"].nunique(), scene)
     return {"errors": errors, "drawn": left, "bands": bands(errors)}
-
-
-def _compared(rows: pd.DataFrame) -> pd.DataFrame:
-    frames = "load" in rows
-    return (differences.with_reference_of_frames if frames else differences.with_reference)(rows)
 
 
 PEAKS, KAPPAS = (0.01, 0.1, 0.5), (10.0, 100.0)
@@ -236,8 +231,10 @@ def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
 
     The last is 0 where there is no error to speak of, nan unless both rocked.
     """
-    whole = _compared(rows[rows["half"] == 0]).reset_index(drop=True)
-    whole["estimate"] = estimates_of(whole, rows[rows["half"] == 1], "set", "case")
+    whole = differences.with_reference(rows[rows["half"] == 0]).reset_index(drop=True)
+    finer = rows[rows["half"] == 1].to_dict("records")
+    pairs = zip(whole.to_dict("records"), finer, strict=True)
+    whole["estimate"] = [estimate_of(*pair) for pair in pairs]
     errors = whole["error"].abs()
     over = (errors / whole["estimate"]).where(errors > RESOLVED, 0.0)
     return whole.assign(over=over.where(errors.notna() & whole["estimate"].notna()))

@@ -17,12 +17,13 @@ import numpy as np
 import pandas as pd
 from cyclopts import Parameter
 
+from analytic.accelerograms.units import Units
 from analytic.block import RigidBlock
 from analytic.record import Record
 from analytic.response import Outcome
 from studies.blocks import strength
 from studies.blocks.cabinets import Cabinet, read_cabinets
-from studies.cases.accelerograms import Baseline, Units, baseline_note, recorded
+from studies.cases.accelerograms import Baseline, baseline_note, recorded
 from studies.cases.paper import free_rocking_window
 from studies.kit import arguments
 from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
@@ -254,7 +255,7 @@ def command(
     """
     arguments.refuse_repeats("--scale", scale)
     arguments.refuse_repeats("--record", [Path(path.name) for path in record])
-    motions = recorded(record, units, baseline, "--record")
+    motions = recorded(record, units, baseline)
     grounds = {path.name: ground for path, ground in zip(record, motions, strict=True)}
     listed = read_cabinets(cabinets)
     cases = len(listed) * len(grounds) * len(scale)

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import RockingFrame, frame_demands, simulate
-from analytic.block import GRAVITY, RigidBlock, Rocker
+from analytic.block import RigidBlock, Rocker
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
 from engines.layouts import BEAM_DEPTH, SPACING
@@ -56,11 +56,8 @@ class RandomCase:
     @property
     def motion(self) -> SinePulse:
         """The pulse."""
-        return SinePulse(
-            amplitude=self.amplitude_g * GRAVITY,
-            omega=self.omega_over_p * self.block.p,
-            half_cycles=self.half_cycles,
-        )
+        omega = self.omega_over_p * self.block.p
+        return SinePulse.in_g(self.amplitude_g, omega=omega, half_cycles=self.half_cycles)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,8 +79,7 @@ def draw(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
 
     H/B from 1.2 to 12, B from 0.02 to 10 m, 1 to 4 half cycles, amplitudes from 1.02 to 4 onsets
     and omega/p from 0.3 to 12, width and frequency with uniform logarithms. Frames have 2 to 5
-    columns and loads from 0.1 to 10, with uniform logarithms. `fate_of` says which are kept; these
-    are numbered from 0.
+    columns and loads from 0.1 to 10, with uniform logarithms. `fate_of` says which are kept.
     """
     kept = (drawn for drawn, exact in everything(seed, scene) if fate_of(drawn, exact) == KEPT)
     for case, drawn in enumerate(kept):

@@ -23,26 +23,18 @@ class Extreme:
 
     Attributes
     ----------
-    name, group : str
-    width_m, aspect : float
-        B [m] and H/B.
     onsets : float
         Amplitude of the pulse over the acceleration g B/H that lifts the block.
-    omega_over_p, half_cycles : float, int
     restitution : float or None
         Velocity ratio of impacts; None for Housner's. An engine's impact is its own: cases with
         another ratio are not asked of engines.
     rest_s : float
         Least time [s] of observation after the pulse.
-    density : float
-        [kg/m3]
-    friction : float or None
-        None for a preset's own, as below.
+    density, friction, step_s : float or None
+        [kg/m3]; and with None for a preset's own, the coefficient and the step [s].
     contact : float or None
         Time T of an engine's contact, in units of 1/p: a contact that holds the block's mass by a
         spring of m/T^2 with critical damping. None for a preset's own.
-    step_s : float or None
-        Step [s].
     """
 
     name: str
@@ -113,10 +105,9 @@ def takes_spring(source: Source) -> bool:
 
 
 def contact_settings(source: str, time: float, step: float) -> Mapping[str, Any]:
-    """Return an engine's settings of a contact with a time T of its own, at an ordinary step.
+    """Return an engine's settings of a contact with a time of its own; both times are over 1/p.
 
-    By `Engine.spring` it holds the block's mass m by a spring of m/T^2 with critical damping; both
-    times are in units of 1/p. ValueError if the engine has no such contact.
+    ValueError if the engine has no such contact.
     """
     spring = resolve(source).declared.spring
     if spring is None:
@@ -145,13 +136,11 @@ QUICK = (
 )
 
 
-def extremes(quick: bool) -> list[Extreme]:
-    """Return the cases; quick leaves out neighbours and what takes long."""
-    return [case for case in _all() if not quick or case.name in QUICK]
-
-
 @cache
-def _all() -> tuple[Extreme, ...]:
+def extremes(quick: bool) -> tuple[Extreme, ...]:
+    """Return the cases; quick leaves out neighbours and what takes long."""
+    if quick:
+        return tuple(case for case in extremes(False) if case.name in QUICK)
     half = Extreme(name="boundary", group="amplitude", half_cycles=1)
     full = replace(half, name="boundary after impact", half_cycles=2)
     # the largest rotation that survives lies before the first impact, and after it

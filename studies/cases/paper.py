@@ -3,8 +3,9 @@
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import product
 
-from analytic.block import GRAVITY, RigidBlock
+from analytic.block import RigidBlock
 from analytic.motion import Motion, SinePulse
 from engines.layouts import System
 
@@ -27,22 +28,12 @@ ASPECTS = (2, 3, 4)
 WIDTHS_M = (0.5, 1.0)
 """B [m], the columns of panels."""
 
-OMEGA_RATIOS = tuple(k / 10 for k in range(1, 41))
-"""omega/p, the abscissa."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One point of the paper's sensitivity analysis.
+    """One point of the paper's sensitivity analysis: figure, pulse and excess [g] of `SWEEPS`.
 
-    Attributes
-    ----------
-    figure, pulse, excess_g : int, str, float
-        Of `SWEEPS`; the excess e is in g.
-    aspect, width_m : float
-        H/B, and B [m].
-    omega_over_p : float
-        Circular frequency of the pulse over p.
+    H/B, B [m], and the circular frequency of the pulse over p.
     """
 
     figure: int
@@ -65,26 +56,13 @@ class Case:
     @property
     def motion(self) -> SinePulse:
         """The pulse."""
-        return SinePulse(
-            amplitude=self.amplitude_g * GRAVITY,
-            omega=self.omega_over_p * self.block.p,
-            half_cycles=PULSES[self.pulse],
-        )
+        omega, half_cycles = self.omega_over_p * self.block.p, PULSES[self.pulse]
+        return SinePulse.in_g(self.amplitude_g, omega=omega, half_cycles=half_cycles)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class HistoryCase:
-    """One panel of the paper's time histories.
-
-    Attributes
-    ----------
-    figure, panel, pulse : int, str, str
-        The pulse is one of `PULSES`.
-    width_m, height_m : float
-        B and H [m].
-    amplitude_g, omega_rad_s : float
-        Amplitude [g] and circular frequency [rad/s] of the pulse.
-    """
+    """One panel of the paper's time histories: a pulse of `PULSES`, B and H [m]."""
 
     figure: int
     panel: str
@@ -102,35 +80,24 @@ class HistoryCase:
     @property
     def motion(self) -> SinePulse:
         """The pulse."""
-        return SinePulse(
-            amplitude=self.amplitude_g * GRAVITY,
-            omega=self.omega_rad_s,
-            half_cycles=PULSES[self.pulse],
-        )
-
-
-def _panel(figure: int, panel: str, pulse: str, size: tuple[float, float], a: float) -> HistoryCase:
-    width, height = size
-    return HistoryCase(
-        figure=figure, panel=panel, pulse=pulse, width_m=width, height_m=height, amplitude_g=a
-    )
+        half_cycles = PULSES[self.pulse]
+        return SinePulse.in_g(self.amplitude_g, omega=self.omega_rad_s, half_cycles=half_cycles)
 
 
 HISTORIES = {
-    # the caption of figure 2 does not name its pulse: both readings are drawn
-    2: (
-        _panel(2, "a", "half-sine", (1.0, 3.0), 0.4),
-        _panel(2, "b", "full-sine", (1.0, 3.0), 0.4),
+    2: (  # its caption does not name the pulse: both readings are drawn
+        HistoryCase(2, "a", "half-sine", 1.0, 3.0, 0.4),
+        HistoryCase(2, "b", "full-sine", 1.0, 3.0, 0.4),
     ),
     4: (
-        _panel(4, "a", "half-sine", (0.5, 3.0), 0.2),
-        _panel(4, "b", "half-sine", (0.5, 1.5), 0.4),
-        _panel(4, "c", "half-sine", (0.5, 1.0), 0.7),
+        HistoryCase(4, "a", "half-sine", 0.5, 3.0, 0.2),
+        HistoryCase(4, "b", "half-sine", 0.5, 1.5, 0.4),
+        HistoryCase(4, "c", "half-sine", 0.5, 1.0, 0.7),
     ),
     5: (
-        _panel(5, "a", "full-sine", (0.5, 3.0), 0.2),
-        _panel(5, "b", "full-sine", (0.5, 1.5), 0.4),
-        _panel(5, "c", "full-sine", (0.5, 1.0), 0.6),
+        HistoryCase(5, "a", "full-sine", 0.5, 3.0, 0.2),
+        HistoryCase(5, "b", "full-sine", 0.5, 1.5, 0.4),
+        HistoryCase(5, "c", "full-sine", 0.5, 1.0, 0.6),
     ),
 }
 """Panels of each figure of time histories."""
@@ -140,27 +107,17 @@ def sweep_cases(figures: Iterable[int]) -> Iterator[Case]:
     """Yield the 240 cases of each figure: aspect ratio, width, then frequency."""
     for figure in figures:
         pulse, excess_g = SWEEPS[figure]
-        for aspect in ASPECTS:
-            for width_m in WIDTHS_M:
-                for omega_over_p in OMEGA_RATIOS:
-                    yield Case(
-                        figure=figure,
-                        pulse=pulse,
-                        excess_g=excess_g,
-                        aspect=aspect,
-                        width_m=width_m,
-                        omega_over_p=omega_over_p,
-                    )
+        for aspect, width_m, tenths in product(ASPECTS, WIDTHS_M, range(1, 41)):
+            yield Case(
+                figure=figure,
+                pulse=pulse,
+                excess_g=excess_g,
+                aspect=aspect,
+                width_m=width_m,
+                omega_over_p=tenths / 10,
+            )
 
 
 def free_rocking_window(block: System, motion: Motion) -> float:
-    """Return the time [s] of an observation: the motion and 8/p of free rocking, a few impacts.
-
-    Parameters
-    ----------
-    block : System
-        Of which p [rad/s] is used.
-    motion : Motion
-        From time 0; its duration [s] is used.
-    """
+    """Return the time [s] of an observation: the motion and 8/p of free rocking, a few impacts."""
     return motion.duration + 8.0 / block.p

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from analytic import peak_ratios
-from studies.cases.paper import Case, sweep_cases
+from studies.cases.paper import ASPECTS, Case, sweep_cases
 
 COMPARED_IMPACTS = 3
 """Impacts of each that are compared."""
@@ -25,7 +25,7 @@ def chosen_cases(quick: bool) -> dict[str, list[Case]]:
             for case in known
         ]
         peaks, _ = peak_ratios(*np.array(posed, np.float64).T)
-        for aspect in (2, 3, 4):
+        for aspect in ASPECTS:
             mine = np.isfinite(peaks) & np.array([case.aspect == aspect for case in known])
             survivors = np.where(mine, peaks, -np.inf)
             chosen["typical"].append(known[int(np.argmin(np.abs(survivors - 0.3)))])

@@ -24,17 +24,10 @@ STILL = f"{OWN_STEP}, on a base at rest"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variant:
-    """One way to set an engine: a preset and what differs from it.
+    """One way to set an engine: a preset, which factor differs from it, and how.
 
-    Attributes
-    ----------
-    engine, preset : str
-    factor, level : str
-        What differs, and how; of a preset as it is no factor, and its title.
-    settings, scene : mapping
-        Settings of the engine, and options of the `Scene`, that replace the preset's.
-    trap : str
-        Why it goes wrong without a word, where it does.
+    A preset as it is has no factor, and its title as level. `settings` and `scene` replace those
+    of the preset; `trap` says why it goes wrong without a word, where it does.
     """
 
     engine: str

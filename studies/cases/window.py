@@ -31,7 +31,6 @@ LIMITS = {
 """Between which values the edges of every model are found, and in little time."""
 LEAST_SPAN = 1.001
 """The range of the abscissa, its end over its beginning, is at least this."""
-WIDTH_M = 0.5
 
 
 def _check(name: str, value: float, limits: tuple[float, float]) -> None:
@@ -98,14 +97,8 @@ class Window:
 
     def points(self, most: int) -> tuple[FloatArray, FloatArray]:
         """Return abscissae and amplitudes of a grid of at most so many columns and rows."""
-        return tuple(  # type: ignore[return-value]
-            each.ravel()
-            for each in np.meshgrid(
-                self.centres(min(self.columns, most)),
-                self.amplitudes(min(self.rows, most)),
-                indexing="ij",
-            )
-        )
+        x, onsets = self.centres(min(self.columns, most)), self.amplitudes(min(self.rows, most))
+        return np.repeat(x, len(onsets)), np.tile(onsets, len(x))
 
     def alpha(self, x: FloatArray) -> FloatArray:
         """Return the slenderness [rad] at abscissae."""
@@ -131,7 +124,7 @@ class Window:
     def case(self, x: float, onsets: float) -> tuple[RigidBlock, SinePulse]:
         """Return the block and the pulse of a point, for sources other than the models."""
         alpha = float(self.alpha(np.array(x)))
-        width = WIDTH_M
+        width = 0.5
         if self.over == "size":
             width = 2.0 * 0.75 * GRAVITY / (2.0 * math.pi * x) ** 2 * math.sin(alpha)
         block = RigidBlock(width=width, height=width / math.tan(alpha))

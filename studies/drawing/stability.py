@@ -15,7 +15,7 @@ from matplotlib.patches import Patch, Rectangle
 from studies.drawing.facets import key
 from studies.drawing.styles import engine_title
 from studies.measures.presets import look_of, preset_of
-from studies.measures.verdicts import ACCEPTED, Verdict
+from studies.measures.verdicts import ACCEPTED, SENTENCES, Verdict
 
 MARKS = {
     Verdict.GOOD: ("#B5E0D3", "✓", "#000000", ""),
@@ -68,7 +68,7 @@ def draw_matrix(rows: pd.DataFrame, title: str) -> Figure:
         axes.set_xlim(0, most)
     drawing.suptitle(fill(title, 75), fontsize=12)
     handles = [
-        Patch(fc=colour, ec="#888888", hatch=hatch, label=f"{symbol}  {verdict.sentence}")
+        Patch(fc=colour, ec="#888888", hatch=hatch, label=f"{symbol}  {SENTENCES[verdict]}")
         for verdict, (colour, symbol, _, hatch) in MARKS.items()
         if verdict.value in set(rows["verdict"])
     ]

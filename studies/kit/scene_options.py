@@ -8,6 +8,7 @@ from typing import Annotated, Literal, NamedTuple
 
 from cyclopts import Parameter
 
+from analytic.accelerograms.units import Units
 from analytic.block import GRAVITY, RigidBlock
 from analytic.checks import LEAST, MOST
 from analytic.frame import RockingFrame
@@ -17,7 +18,7 @@ from analytic.simulate import strongest
 from analytic.slide import SlidingBlock
 from analytic.start import LEAST_TILT
 from engines.layouts import System
-from studies.cases.accelerograms import Baseline, Units, read_record
+from studies.cases.accelerograms import Baseline, read_record
 from studies.cases.paper import PULSES
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import (

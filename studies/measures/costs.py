@@ -14,12 +14,8 @@ from engines import ENGINES
 from studies.kit.say import duration
 from studies.measures.presets import look_of
 
-LEAST_RUNS = 5
-"""A time is of the best of so many runs at least, or marked."""
-LEAST_S = 0.02
-"""Time [s] spent on runs at least: what is timed in it is warm."""
-AGREED = 0.02
-"""Part by which the two shortest may differ: a minimum that came twice is no accident."""
+LEAST_RUNS, LEAST_S = 5, 0.02
+"""A time is of the best of so many runs at least, or marked; in that time [s] all gets warm."""
 STEPPED = "A compiled loop over `mj_step` takes MuJoCo's steps; Python takes all others."
 """Said beside times of a step or of a case."""
 OUTDATED = (
@@ -33,21 +29,13 @@ EXACT = "Taylor series"
 
 
 def enough(times: Sequence[float], spent_s: float, most_s: float) -> bool:
-    """Return whether the shortest of some run times is known, or nothing more may be spent on it.
-
-    Parameters
-    ----------
-    times : sequence of float
-        Run times so far [s], one at least.
-    spent_s, most_s : float
-        How long the runs took with all about them [s], and after what time there is no further one.
-    """
+    """Return whether the shortest of some run times [s] is known, or the time for more is spent."""
     if spent_s >= most_s:
         return True
     if len(times) < LEAST_RUNS or spent_s < LEAST_S:
         return False
     shortest, next_shortest = sorted(times)[:2]
-    return next_shortest <= (1.0 + AGREED) * shortest
+    return next_shortest <= 1.02 * shortest  # a minimum that came twice is no accident
 
 
 def best_of(action: Callable[[], Response], most_s: float) -> tuple[Response, int]:
@@ -60,14 +48,8 @@ def best_of_each(
 ) -> list[tuple[Response, int]]:
     """Return the same of several actions that are run in turn until the time of each is known.
 
-    What else a machine does for a while meets them all alike.
-
-    Parameters
-    ----------
-    actions : sequence of callable
-        Each returns a response with its run time; repeated until `enough`.
-    most_s : float
-        Time [s] spent at most on each, in the mean.
+    What else a machine does for a while meets them all alike. `most_s` is the time [s] spent at
+    most on each, in the mean.
     """
     began, rounds, known = perf_counter(), list[list[Response]](), False
     while not known:
@@ -75,33 +57,20 @@ def best_of_each(
         spent_s = (perf_counter() - began) / len(actions)
         runs = [*zip(*rounds, strict=True)]
         known = all(enough([run.wall_s for run in of_one], spent_s, most_s) for of_one in runs)
+    best = [min(of_one, key=lambda run: run.wall_s) for of_one in runs]
+    setups_s = [min(run.setup_s for run in of_one) for of_one in runs]
     return [
-        (
-            replace(
-                min(of_one, key=lambda run: run.wall_s), setup_s=min(r.setup_s for r in of_one)
-            ),
-            len(of_one),
-        )
-        for of_one in runs
+        (replace(run, setup_s=setup_s), len(rounds))
+        for run, setup_s in zip(best, setups_s, strict=True)
     ]
 
 
-def cost_text(wall_s: float, runs: float, each: str = "") -> str:
-    """Return a time, and what takes it, in words: "12.4 ms a case (4 runs)".
-
-    Parameters
-    ----------
-    wall_s : float
-        [s]; of nan the words are "-".
-    runs : float
-        Of how many runs it is the best; said where they are fewer than LEAST_RUNS.
-    each : str, optional
-        What takes the time, with a space before it.
-    """
+def cost_text(wall_s: float, runs: float) -> str:
+    """Return a time [s] in words, with its runs where they are few: "12.4 ms (4 runs)"."""
     if math.isnan(wall_s):
         return "-"
     few = f" ({runs:.0f} run{'s' if runs != 1 else ''})" if runs < LEAST_RUNS else ""
-    return f"{duration(wall_s)}{each}{few}"
+    return f"{duration(wall_s)}{few}"
 
 
 def exact_cost(lines: pd.DataFrame) -> float:

@@ -21,29 +21,13 @@ from analytic.block import Rocker
 from analytic.motion import FloatArray, Motion
 from analytic.response import Outcome, Response
 from studies.cases.paper import PULSES
-from studies.measures.wrongness import KINDS, counted, kinds_of, wrong_in
+from studies.measures.wrongness import counted, kinds_of, wrong_in
 
 WELL_CONDITIONED = 10.0
 """Below this κ the error of a peak says more about its source than about the case."""
 
 OF_FRAMES = ("exact_outcome", "exact_peak", "agrees", "error", "kappa", "kappa_eta", "sensitivity")
-"""Columns of `with_reference_of_frames`."""
-
-SUMMARY_COLUMNS = [
-    "figure",
-    "source",
-    "cases",
-    "agree",
-    *KINDS,
-    "median_error",
-    "p90_error",
-    "max_error",
-    "max_error_over_kappa",
-    "max_difference",
-    "false_overturnings",
-    "missed_overturnings",
-    "wall_s",
-]
+"""Columns that `with_reference` adds to rows of frames."""
 
 
 def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
@@ -52,45 +36,30 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     rows : DataFrame
-        The columns that `exact_peaks` takes, and outcome and peak_ratio.
+        The columns that `posed_cases` takes, outcome and peak_ratio; of frames also load, aspect
+        and omega_over_p then being those of a column and of the frame.
 
     Returns
     -------
     DataFrame
         With the further columns exact_outcome, exact_peak, agrees, error (relative) and difference
         (of abs(theta)/theta_cr), both nan unless both rocked and survived, false_overturning and
-        missed_overturning, and the columns of `with_conditioning`.
+        missed_overturning, and the columns of `with_conditioning`; of frames OF_FRAMES alone.
     """
     peak, outcome = exact_peaks(rows)
-    known = with_conditioning(rows)
-    joined = known.assign(
+    joined = with_conditioning(rows).assign(
         exact_peak=peak, exact_outcome=[str(getattr(it, "value", it)) for it in outcome]
     )
     found, right = joined["outcome"], joined["exact_outcome"]
     both_rocked = (found == "rocked") & (right == "rocked")
-    return joined.assign(
+    compared = joined.assign(
         agrees=kinds_of(found, right) == "",
         error=(joined["peak_ratio"] / joined["exact_peak"] - 1.0).where(both_rocked),
         difference=(joined["peak_ratio"] - joined["exact_peak"]).where(both_rocked),
         false_overturning=(found == "overturned") & (right != "overturned"),
         missed_overturning=(right == "overturned") & found.isin(["rocked", "at rest"]),
     )
-
-
-def with_reference_of_frames(rows: pd.DataFrame) -> pd.DataFrame:
-    """Add to rows of frames what `with_reference` adds to those of blocks, as far as it is told.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        As for `with_reference`, aspect and omega_over_p those of a column and the frame, and load.
-
-    Returns
-    -------
-    DataFrame
-        With exact_outcome, exact_peak, agrees, error, kappa, kappa_eta and sensitivity.
-    """
-    return with_reference(rows)[[*rows, *OF_FRAMES]]
+    return compared[[*rows, *OF_FRAMES]] if "load" in rows else compared
 
 
 Posed: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
@@ -134,23 +103,11 @@ def _different(cases: pd.DataFrame) -> tuple[Posed, FloatArray | None, NDArray[n
 def conditioning_of_one(
     block: Rocker, motion: Motion, start: tuple[float, float], exact: Response
 ) -> dict[str, float]:
-    """Return the condition number and the sensitivity of an exact peak.
+    """Return the condition number kappa and the sensitivity of an exact peak; nan where it failed.
 
-    See `analytic.conditioning` (EQUATIONS.md, "Condition numbers") and `analytic.sensitivity`.
-
-    Parameters
-    ----------
-    block, motion, start
-        As for `analytic.simulate`; theta [rad] and theta' [rad/s] at time zero.
-    exact : Response
-        What `simulate` returns of them.
-
-    Returns
-    -------
-    dict
-        kappa, by the scale of the motion: nan unless the block rocks and survives. sensitivity: inf
-        where a small change of the motion or of eta changes the outcome, else 0 of a block that
-        stays at rest or overturns. Both nan where exact failed.
+    kappa, by the scale of the motion, is nan unless the block rocks and survives. The sensitivity
+    is inf where a small change of the motion or of eta changes the outcome, else 0 of a block that
+    stays at rest or overturns. See EQUATIONS.md, "Condition numbers".
     """
     if exact.outcome is Outcome.FAILED:
         return {"kappa": math.nan, "sensitivity": math.nan}
@@ -163,8 +120,7 @@ def with_conditioning(cases: pd.DataFrame) -> pd.DataFrame:
 
     They are the factors by which a small relative error of the pulse, or of the velocity ratio at
     impacts, grows into one of the peak; nan where no peak survives. And sensitivity, the same of
-    errors of 1e-6 and 1e-4 (`analytic.sensitivities`): near the onset and near overturning it is
-    much larger.
+    errors of 1e-6 and 1e-4: near the onset and near overturning it is much larger.
     """
     posed, restitution, back = _different(cases)
     found = condition_numbers(*posed, restitution=restitution)
@@ -197,41 +153,34 @@ def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:
 
 
 def summarize(compared: pd.DataFrame) -> pd.DataFrame:
-    """Return one line for each figure and source, and for all figures where there are several.
-
-    Parameters
-    ----------
-    compared : DataFrame
-        From `with_reference`.
-    """
-    lines = _lines(compared)
+    """Return one line for each figure and source, and for all figures where there are several."""
+    tables = [compared]
     if compared["figure"].nunique() > 1:
-        lines += _lines(compared.assign(figure="all"))
-    return pd.DataFrame(lines, columns=SUMMARY_COLUMNS)
+        tables.append(compared.assign(figure="all"))
+    return pd.DataFrame(
+        [
+            {"figure": figure, "source": source, **_line(group)}
+            for table in tables
+            for (figure, source), group in table.groupby(["figure", "source"], sort=False)
+        ]
+    )
 
 
-def _lines(compared: pd.DataFrame) -> list[list[object]]:
-    return [
-        [figure, source, *_line(group)]
-        for (figure, source), group in compared.groupby(["figure", "source"], sort=False)
-    ]
-
-
-def _line(group: pd.DataFrame) -> list[object]:
+def _line(group: pd.DataFrame) -> dict[str, Any]:
     errors = group["error"].abs().dropna()
-    return [
-        len(group),
-        int(group["agrees"].sum()),
-        *counted(wrong_in(group)).values(),
-        errors.median(),
-        errors.quantile(0.9) if len(errors) else math.nan,
-        errors.max(),
-        (errors / sensitivity_of(group)).max(),
-        group["difference"].abs().max(),
-        int(group["false_overturning"].sum()),
-        int(group["missed_overturning"].sum()),
-        group["wall_s"].sum(),
-    ]
+    return {
+        "cases": len(group),
+        "agree": int(group["agrees"].sum()),
+        **counted(wrong_in(group)),
+        "median_error": errors.median(),
+        "p90_error": errors.quantile(0.9),
+        "max_error": errors.max(),
+        "max_error_over_kappa": (errors / sensitivity_of(group)).max(),
+        "max_difference": group["difference"].abs().max(),
+        "false_overturnings": int(group["false_overturning"].sum()),
+        "missed_overturnings": int(group["missed_overturning"].sum()),
+        "wall_s": group["wall_s"].sum(),
+    }
 
 
 def scientific(value: float) -> str:

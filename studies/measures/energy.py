@@ -18,9 +18,8 @@ NEAR = 0.15
 def energy(block: Rocker, history: History) -> FloatArray:
     """Return the exact model's energy of each sample, over m g R."""
     y = np.abs(history.theta)
-    kinetic = 0.5 * (history.velocity / block.p) ** 2
-    result: FloatArray = kinetic + 2.0 * np.sin(block.alpha - 0.5 * y) * np.sin(0.5 * y)
-    return result
+    kinetic: FloatArray = 0.5 * (history.velocity / block.p) ** 2
+    return kinetic + 2.0 * np.sin(block.alpha - 0.5 * y) * np.sin(0.5 * y)
 
 
 def flights(

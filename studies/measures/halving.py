@@ -25,9 +25,6 @@ BOUNDED = 0.95
 """Part of the random cases whose error a factor bounds."""
 MOST_TRUSTED = 30.0
 """A larger factor is no bound: the estimate does not see the error."""
-
-CONFIDENCE = 0.95
-"""Of the interval of a factor."""
 CALIBRATE, TEST = "calibrate", "test"
 """What a random case is for: to find the factors, or to try them."""
 
@@ -72,16 +69,6 @@ def estimate_of(row: Mapping[Any, Any], finer: Mapping[Any, Any]) -> float:
     return abs(float(row["peak_ratio"]) / float(finer["peak_ratio"]) - 1.0)
 
 
-def estimates_of(rows: pd.DataFrame, finer: pd.DataFrame, *keys: str) -> list[float]:
-    """Return the estimate of each row, nan where `finer` has none with the same keys and source."""
-    names = [*keys, "source"]
-    halves = {tuple(row[name] for name in names): row for row in finer.to_dict("records")}
-    pairs = [
-        (row, halves.get(tuple(row[name] for name in names))) for row in rows.to_dict("records")
-    ]
-    return [math.nan if half is None else estimate_of(row, half) for row, half in pairs]
-
-
 def factors(lines: pd.DataFrame) -> pd.DataFrame:
     """Return for each source by how much its estimates are to be multiplied.
 
@@ -123,7 +110,7 @@ def interval(over: FloatArray) -> tuple[float, float]:
 
     if not len(over):
         return 0.0, math.inf
-    ends: Any = quantile_test(over, p=BOUNDED).confidence_interval(CONFIDENCE)
+    ends: Any = quantile_test(over, p=BOUNDED).confidence_interval(0.95)
     low = over.min() if math.isnan(ends.low) else ends.low
     return float(low), math.inf if math.isnan(ends.high) else float(ends.high)
 
@@ -133,11 +120,13 @@ def _quantile(over: FloatArray, level: float) -> float:
 
 
 class Trust(NamedTuple):
-    """What published random cases say of a source's estimates."""
+    """What published random cases say of a source's estimates.
+
+    The factor that bounds the errors of `BOUNDED` of them is the upper end of its 95 % interval,
+    inf where the cases are too few for one.
+    """
 
     factor: float
-    """That bounds the errors of `BOUNDED` of the cases: the upper end of its 95 % interval, inf
-    where the cases are too few for one."""
     cases: int
 
     @property

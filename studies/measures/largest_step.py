@@ -18,8 +18,6 @@ START, SMALLEST_STEP, LARGEST_STEP = 0.01, 1e-4, 1.0
 """p dt from which a search sets out, and between which it searches."""
 FACTOR, QUICK_FACTOR = 1.05, 1.3
 """Factor within which a largest step is found."""
-OWN_CONTACT = 0.01
-"""Time, in units of 1/p, of a contact that does not follow the step."""
 PROBLEMS = (
     Extreme(name="peak before an impact", group="steps", half_cycles=1, onsets=1.5),
     Extreme(name="peak after an impact", group="steps"),
@@ -28,27 +26,23 @@ PROBLEMS = (
     Extreme(name="1 cm high", group="steps", width_m=0.01 / 3.0),
     Extreme(name="20 half-cycles", group="steps", half_cycles=20, omega_over_p=4.0, onsets=1.5),
 )
-QUICK_PROBLEMS = PROBLEMS[1:2]
 
 
 def searches(sources: Sequence[str], quick: bool) -> Iterator[tuple[Extreme, str, float, float]]:
     """Yield problem, source, contact time [s] and factor of each search."""
-    for case in QUICK_PROBLEMS if quick else PROBLEMS:
+    for case in PROBLEMS[1:2] if quick else PROBLEMS:
         for source in sources:
             for contact_s in contact_times(case, source):
                 yield case, source, contact_s, QUICK_FACTOR if quick else FACTOR
 
 
 def contact_times(case: Extreme, source: str) -> tuple[float, ...]:
-    """Return the contact times [s] to try a source with, nan for one that has none of its own.
-
-    None for a source that does not step.
-    """
+    """Return the contact times [s] to try a source that steps with, nan for none of its own."""
     asked = resolve(source)
     if not asked.stepping:
         return ()
-    if _is_sprung(source):
-        return (math.nan, OWN_CONTACT / case.block.p)
+    if _is_sprung(source):  # also one that does not follow the step, of a hundredth of 1/p
+        return (math.nan, 0.01 / case.block.p)
     return (asked.used.contact_s if asked.engine else math.nan,)
 
 
@@ -66,21 +60,8 @@ def largest_steps(
 ) -> dict[str, Any]:
     """Return the largest stable and the largest accurate step of a source, p dt.
 
-    Parameters
-    ----------
-    case : Extreme
-    source : str
-    contact_s, factor : float
-        From `searches`.
-    ask : callable
-        Options -> the response to the case with them.
-
-    Returns
-    -------
-    dict
-        outcome, "searched"; both steps, and both over the contact's time, nan where none was found;
-        runs, how many it took; invalid, why the reference does not hold; and message, of the
-        response with the largest accurate step, or else with START.
+    `ask` makes of options the response to the case with them. Both steps are nan where none was
+    found; message is of the response with the largest accurate step, or else with START.
     """
     contact = contact_s * case.block.p
 

@@ -13,11 +13,7 @@ Fill = Literal["none", "left", "bottom", "full"]
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """How a preset is named and drawn: in a sentence about engines that have it, and in a picture.
-
-    `short` stands after the name of an engine; `line` and `fill` are of an engine's line and
-    marker.
-    """
+    """How a preset is named, in a sentence about engines and after the name of one, and drawn."""
 
     words: str
     short: str

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from analytic import simulate
 from engines import ENGINES
@@ -46,20 +45,16 @@ def published_in(folder: Path | None, names: Sequence[str]) -> Path:
     return found
 
 
-@cache
-def needed() -> NDArray[np.float64]:
-    """Return the friction that the exact solution needs in each of the paper's cases."""
-    return np.array([simulate(c.block, c.motion).friction_needed for c in sweep_cases(SWEEPS)])
-
-
 def too_slippery(friction: float | None) -> str:
     """Say in how many of the paper's cases the exact solution needs more friction, or nothing."""
-    short = 0 if friction is None else int((needed() > friction).sum())
-    if not short:
+    if friction is None:
+        return ""
+    needed = [simulate(case.block, case.motion).friction_needed for case in sweep_cases(SWEEPS)]
+    if not (short := sum(each > friction for each in needed)):
         return ""
     return (
-        f"With friction {friction:g} a block slides in {short} of the paper's {needed().size} "
-        f"cases, which need up to {needed().max():.3g}; what was published was measured with the "
+        f"With friction {friction:g} a block slides in {short} of the paper's {len(needed)} "
+        f"cases, which need up to {max(needed):.3g}; what was published was measured with the "
         "presets' own friction."
     )
 
@@ -139,8 +134,8 @@ def _of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     """Return each preset, as it is declared, on the paper's cases."""
     lines = pd.concat([pd.read_csv(published / name) for name in PAPER], ignore_index=True)
     lines = lines[lines["figure"].astype(str) == "all"].drop_duplicates("source")
-    lines = lines[[resolve(source).engine in engines for source in lines["source"]]]
-    asked = [resolve(source) for source in lines["source"]]
+    lines = lines[lines["source"].str.partition(":")[0].isin(engines)]
+    asked = list(map(resolve, lines["source"]))
     return pd.DataFrame(
         {
             "engine": [source.engine for source in asked],

@@ -15,14 +15,9 @@ from engines.layouts import System
 def samples(
     response: Response, system: System, motion: Motion, labels: Mapping[str, Any]
 ) -> pd.DataFrame:
-    """Return the history of a response as a tidy table, with the ground acceleration.
-
-    A row for each sample: the labels, outcome, time_s [s], ground_g [g], theta_ratio (theta/alpha)
-    and velocity_rad_s [rad/s]; ValueError if the response has no history.
-    """
+    """Return the history of a response as a table: labels, outcome, motion of ground and block."""
     history = response.history
-    if history is None:
-        raise ValueError("the response has no history")
+    assert history is not None
     return pd.DataFrame(
         {
             **labels,

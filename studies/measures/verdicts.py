@@ -15,12 +15,10 @@ from studies.sources.registry import resolve
 
 BAND, WIDE_BAND = 0.01, 0.1
 """Relative error of the peak that is accurate, and that is still a result."""
-ENERGY_BAND = 0.01
-"""Rise of the energy of free rocking, over its largest value, that counts as growth."""
+ENERGY_BAND, SLIP_BAND = 0.01, 0.01
+"""Rise of the energy of free rocking over its largest value, and slip over B, that count."""
 EDGE_BAND = 2e-6
 """Relative difference of the amplitude within which an outcome that changes is hard to tell."""
-SLIP_BAND = 0.01
-"""Slip over the width that counts as sliding."""
 SMALLEST = 1e-6
 """Peaks below this part of θcr may go unseen."""
 LEFT = (Reason.SLID, Reason.THROWN)
@@ -41,13 +39,8 @@ class Verdict(enum.Enum):
     FAILED = NO_ANSWER
     INVALID = "invalid"
 
-    @property
-    def sentence(self) -> str:
-        """What a reader sees."""
-        return _SENTENCES[self]
 
-
-_SENTENCES = {
+SENTENCES = {
     Verdict.GOOD: "outcome right, peak within 1 % or 1e-6 θcr",
     Verdict.UNSEEN: "misses a rocking below 1e-6 θcr",
     Verdict.COARSE: "peak within 10 %",
@@ -59,6 +52,7 @@ _SENTENCES = {
     Verdict.FAILED: WORDS[NO_ANSWER],
     Verdict.INVALID: "the reference is not valid here",
 }
+"""Verdict -> what a reader sees."""
 
 ACCEPTED = (Verdict.GOOD, Verdict.UNSEEN, Verdict.INVALID)
 """Verdicts that are nobody's failure."""
@@ -71,18 +65,11 @@ def reference(case: Extreme) -> tuple[Response, float]:
 
 
 def judge(case: Extreme, source: str, response: Response) -> dict[str, Any]:
-    """Return the verdict on a response, and the columns that compare it with the exact solution.
+    """Return the verdict on a source's response, and what compares it with the exact solution.
 
     The verdict is INVALID where the reference does not hold for an engine, unless the response is
-    right all the same, or the run broke down.
-
-    Parameters
-    ----------
-    case : Extreme
-    source : str
-        Whose response it is.
-    response : Response
-        Its energy counts only where it has a history that goes on after the pulse.
+    right all the same, or the run broke down. Its energy counts only where it has a history that
+    goes on after the pulse.
     """
     exact, kappa = reference(case)
     both = response.outcome is Outcome.ROCKED is exact.outcome

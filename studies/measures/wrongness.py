@@ -6,7 +6,7 @@ Only two outcomes are compared, so that whoever reads a published table can coun
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -32,22 +32,10 @@ ANSWERS = tuple(outcome.value for outcome in (Outcome.AT_REST, Outcome.ROCKED, O
 """Outcomes that can be right."""
 
 
-Counts: TypeAlias = "Mapping[str, Any] | pd.Series[Any]"
-"""How many outcomes are wrong, by kind; the line of a summary is one."""
-
-
 def kinds_of(found: ArrayLike, right: ArrayLike) -> NDArray[np.str_]:
     """Return for each outcome its kind of wrongness, empty where it is the exact one.
 
-    Parameters
-    ----------
-    found, right : array_like of str
-        Outcomes of a source and of the exact solution, case by case.
-
-    Raises
-    ------
-    ValueError
-        If the exact solution has no outcome.
+    It is a ValueError if the exact solution has no outcome.
     """
     mine, exact = np.broadcast_arrays(np.asarray(found, object), np.asarray(right, object))
     if not np.isin(exact, ANSWERS).all():
@@ -77,7 +65,7 @@ def counted(kinds: pd.Series[Any]) -> dict[str, int]:
     return {kind: int((kinds == kind).sum()) for kind in KINDS}
 
 
-def in_kinds(counts: Counts) -> str:
+def in_kinds(counts: Mapping[str, Any] | pd.Series[Any]) -> str:
     """Return how many outcomes are wrong, by kind: "wrong overturning in 3, no result in 2"."""
     words = [f"{name} in {counts[kind]:.0f}" for kind, name in WORDS.items() if counts[kind]]
     return ", ".join(words) or "none wrong"

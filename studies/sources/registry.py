@@ -15,17 +15,16 @@ from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
-from engines.layouts import Ability, System, layout_of
+from engines.layouts import System
 from engines.parts.compiled import interpreted_first
-from engines.registry import OWN, named
 from engines.registry import announce as announce_engine
+from engines.registry import named
 from engines.scene import Scene, one_of, perhaps
 from studies.sources.scipy_peers import solve_ivp_response
 
 Kind = Literal["model", "solver", "peer", "engine"]
 """Models and solvers take microseconds, peers (general-purpose integrators) milliseconds, and
 none of them crashes; an engine may."""
-
 
 NOT_OPTIONS = frozenset({"block", "system", "motion", "model", "method", "preset", "times"})
 """What is asked and who, beside which an option is a question of how."""
@@ -48,8 +47,6 @@ class Source:
         Names; empty where it is no engine. The preset is by default that of the best there is.
     stepping : bool
         Whether it has an option `step`, p dt; `accurate` ones have an option `accuracy`.
-    model : str
-        Name of the model whose equation it solves.
     name : str
         By which it was asked for.
     """
@@ -59,7 +56,6 @@ class Source:
     engine: str = ""
     preset: str = ""
     stepping: bool = False
-    model: str = "exact"
     name: str = ""
 
     def check(
@@ -71,13 +67,7 @@ class Source:
         times: FloatArray | None,
         **options: Any,
     ) -> None:
-        """Refuse what it cannot be asked, before it is.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If an option is not one of its own, or a value is not allowed.
-        """
+        """Refuse what it cannot be asked, before it is, by a TypeError or ValueError."""
         if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
         if getattr(self.call, "func", None) is run_engine:
@@ -110,43 +100,22 @@ class Source:
         return bool(self.engine) and self.used.stepping is not Stepping.FIXED
 
 
-def asks_of(block: System) -> tuple[Ability, ...]:
-    """Return what an engine must be able to do for a system, beyond one body."""
-    return layout_of(block, 1.0, None, (0.0, 0.0)).asks
-
-
 def run_engine(
     block: System,
     motion: Motion,
     *,
     engine: str,
     preset: str | None,
-    duration: float | None = None,
-    times: FloatArray | None = None,
     **options: Any,
 ) -> Response:
-    """Build the scene and let the engine run it.
+    """Build the scene, as `scene_of` does, and let the engine run it.
 
-    Parameters
-    ----------
-    block, motion, preset, duration, times, **options
-        As for `scene_of`.
-    engine : str
-        A name in `ENGINES`.
-
-    Returns
-    -------
-    Response
-        Failed, with its reason, where the engine is not installed or cannot do what is asked.
-
-    Raises
-    ------
-    ValueError
-        As `scene_of` does, and if the engine has no such preset or setting.
+    The response is failed, with its reason, where the engine is not installed or cannot do what is
+    asked; ValueError if it has no such preset or setting.
     """
     from engines.run.drive import run
 
-    scene = scene_of(block, motion, preset, duration=duration, times=times, **options)
+    scene = scene_of(block, motion, preset, **options)
     return interpreted_first(partial(run, engine, scene))
 
 
@@ -158,24 +127,10 @@ def scene_of(
     times: ArrayLike | None = None,
     **options: Any,
 ) -> Scene:
-    """Return the scene that an engine is asked about.
+    """Return the scene that an engine is asked about, with other options of `Scene` by name.
 
-    Parameters
-    ----------
-    block : System
-    motion : Motion
-    preset : str or None
-        Name of one of the engine's presets; None for the best that the scene allows.
-    times : array_like, shape (n,), optional
-        Increasing ground times [s] of the history.
-    **options
-        What else a `Scene` takes, by name and in its units: `duration` [s], `step` (p dt),
-        `friction`, `settings`, ...
-
-    Raises
-    ------
-    ValueError
-        If there is no such option, or a value is not allowed.
+    The preset is by default the best that the scene allows. ValueError if there is no such option,
+    or a value is not allowed.
     """
     allowed = [item.name for item in fields(Scene) if item.name not in NOT_OPTIONS]
     for name in options:
@@ -189,17 +144,16 @@ def _engine(name: str, preset: str) -> Source:
     return Source("engine", call, name, preset, stepping=True)
 
 
-def _peer(method: str) -> Source:
-    return Source("peer", partial(solve_ivp_response, method=method))
-
-
 SOURCES: dict[str, Source] = {
-    **{name: Source("model", partial(simulate, model=name), model=name) for name in MODELS},
-    "rk4": Source("solver", partial(integrate, method="rk4"), stepping=True),
-    "average-acceleration": Source(
-        "solver", partial(integrate, method="average-acceleration"), stepping=True
-    ),
-    **{name.lower(): _peer(name) for name in ("RK45", "DOP853", "Radau", "LSODA")},
+    **{name: Source("model", partial(simulate, model=name)) for name in MODELS},
+    **{
+        name: Source("solver", partial(integrate, method=name), stepping=True)
+        for name in ("rk4", "average-acceleration")
+    },
+    **{
+        name.lower(): Source("peer", partial(solve_ivp_response, method=name))
+        for name in ("RK45", "DOP853", "Radau", "LSODA")
+    },
     **{name: _engine(name, ENGINES[name].best.name) for name in ENGINES},
 }
 """Every source; a new model or engine appears here by being registered in its own storey."""
@@ -215,10 +169,7 @@ def announce(place: str, name_of: Callable[[str], str] = named) -> str:
 def resolve(name: str) -> Source:
     """Return the source called `name`, which may be an engine with a preset after a colon.
 
-    Raises
-    ------
-    UnknownSourceError
-        If there is no such source or preset; the message lists what there is.
+    UnknownSourceError if there is no such source or preset; the message lists what there is.
     """
     plain, colon, preset = name.partition(":")
     source = SOURCES.get(plain)
@@ -259,15 +210,7 @@ Accuracy = Literal["loose", "standard", "tight"]
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """How finely to step, for the sources that step; None leaves it to them.
-
-    Attributes
-    ----------
-    step : float or None
-        p dt.
-    accuracy : str or None
-        Of an engine whose steps land on impacts.
-    """
+    """How finely to step: p dt, or the accuracy of an engine that lands; None leaves it to them."""
 
     step: float | None = None
     accuracy: Accuracy | None = None
@@ -303,21 +246,6 @@ def core_sources(*presets: str) -> tuple[str, ...]:
         for name in core_engines()
         for preset in presets or ("",)
     )
-
-
-def grouped(names: Iterable[str]) -> Iterator[str]:
-    """Yield the names of sources with "engines:fixed" in place of all engines that have the preset.
-
-    Whether an engine is installed does not count.
-    """
-    groups = {"engines": list(OWN)}
-    for name in OWN:
-        for preset in ENGINES[name].presets:
-            groups.setdefault(f"engines:{preset.name}", []).append(f"{name}:{preset.name}")
-    left = list(names)
-    whole = [word for word, of in groups.items() if len(of) > 1 and set(of) <= set(left)]
-    told = {name: word for word in whole for name in groups[word]}
-    yield from dict.fromkeys(told.get(name, name) for name in left)
 
 
 def expanded(names: Iterable[str]) -> Iterator[str]:

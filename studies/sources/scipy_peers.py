@@ -23,18 +23,6 @@ from analytic.start import REST, folded
 
 MOST_EXCURSIONS = 2000
 
-FREE_STRETCH = 60.0
-"""Free rocking that is integrated at once [1/p]: longer than any block that a double can hold takes
-to turn or to fall, some -ln(1e-16) = 37, so that one stretch decides."""
-
-FIRST_STEP = 0.2
-"""Longest first step out of an impact, over velocity / acceleration: a tenth of the excursion,
-2 v / y'', that these two let expect. One shorter than the first step would be stepped over."""
-
-LEAST_FALL = 1e-6
-"""Least acceleration, in units of p^2, that an excursion is expected to be ended by: with less the
-half of the stretch bounds its first step, not this estimate."""
-
 
 def solve_ivp_response(
     block: RigidBlock,
@@ -46,21 +34,10 @@ def solve_ivp_response(
     duration: float | None = None,
     times: FloatArray | None = None,
 ) -> Response:
-    """Solve the exact model with `scipy.integrate.solve_ivp` and its events.
+    """Solve the exact model with `scipy.integrate.solve_ivp`, its events and one of its methods.
 
-    Parameters
-    ----------
-    block, motion, start, duration, times
-        As in `studies.respond`.
-    method : str
-        Of solve_ivp: "RK45", "DOP853", "Radau", "LSODA", ...
-    rtol : float
-        Relative tolerance; the absolute one is that of a rotation of a thousandth of alpha.
-
-    Returns
-    -------
-    Response
-        Its steps are evaluations of the right-hand side.
+    The absolute tolerance is that of a rotation of a thousandth of alpha. The response's steps are
+    evaluations of the right-hand side.
     """
     march = _March(block, motion, method, rtol, start, duration, times)
     began = time.perf_counter()
@@ -154,12 +131,17 @@ class _March:
         return Outcome.FAILED
 
     def _stretch(self, j: int, tau: float, y: float, v: float, side: float) -> Any:
-        """Integrate to the next impact, breakpoint or decision."""
+        """Integrate to the next impact, breakpoint or decision.
+
+        Of free rocking 60/p at once decide: longer than any block that a double can hold takes to
+        turn or to fall, some -ln(1e-16) = 37. The first step out of an impact is a tenth at most of
+        the excursion, 2 v / y'', for an excursion shorter than that step would be stepped over.
+        """
         free = j >= len(self.segments)
-        end = min(self.until, tau + FREE_STRETCH) if free else float(self.segments[j, 1])
+        end = min(self.until, tau + 60.0) if free else float(self.segments[j, 1])
         events = [_crossing(0, 0.0, -1), _crossing(1, 0.0, -1), _crossing(0, 0.5 * math.pi, 1)]
         events[1].terminal = free and self.until == math.inf  # type: ignore[attr-defined]
-        fall = max(abs(self._rate(j, side)(tau, (y, v))[1]), LEAST_FALL)
+        fall = max(abs(self._rate(j, side)(tau, (y, v))[1]), 1e-6)
         return self.solve_ivp(
             self._rate(j, side),
             (tau, end),
@@ -169,7 +151,7 @@ class _March:
             atol=1e-3 * self.rtol * self.alpha,
             events=events,
             dense_output=self.recorded,
-            first_step=min(FIRST_STEP * v / fall, 0.5 * (end - tau)) if y == 0.0 < v else None,
+            first_step=min(0.2 * v / fall, 0.5 * (end - tau)) if y == 0.0 < v else None,
         )
 
     def _rate(self, j: int, side: float) -> Callable[[float, Any], tuple[float, float]]:

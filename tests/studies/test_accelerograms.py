@@ -13,8 +13,9 @@ from scipy.signal import detrend
 
 import studies
 from analytic import GRAVITY, Record, RigidBlock, simulate
+from analytic.accelerograms.units import UNITS
 from studies.__main__ import run
-from studies.cases.accelerograms import UNITS, read_record
+from studies.cases.accelerograms import read_record
 
 ASKED = [*BLOCK, "--sources", "exact", "housner", "--record"]
 
