@@ -24,8 +24,14 @@ from studies.kit.jobs import Job, Question, Row
 from studies.kit.options import CASE_BYTES, Computing, EffortOptions, Yours, refuse_excess
 from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
-from studies.measures import differences, published
-from studies.measures.differences import WELL_CONDITIONED, conditioning_of, sensitivity_of
+from studies.measures import published
+from studies.measures.differences import (
+    WELL_CONDITIONED,
+    conditioning_of,
+    exact_peaks,
+    sensitivity_of,
+    with_reference,
+)
 from studies.measures.finer import with_every_finer
 from studies.measures.halving import (
     BOUNDED,
@@ -191,7 +197,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     if "half" in rows:
         lines = beside_errors(rows)
         return {"estimate": rows, "estimates": lines, "factors": factors(lines)}
-    errors = differences.with_reference(rows.drop(columns="seed"))
+    errors = with_reference(rows.drop(columns="seed"))
     scene: Drawn = "frame" if "load" in rows else "block"
     left = census(int(rows["seed"].iloc[0]), rows["case"].nunique(), scene)
     return {"errors": errors, "drawn": left, "bands": bands(errors)}
@@ -231,7 +237,7 @@ def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
 
     The last is 0 where there is no error to speak of, nan unless both rocked.
     """
-    whole = differences.with_reference(rows[rows["half"] == 0]).reset_index(drop=True)
+    whole = with_reference(rows[rows["half"] == 0]).reset_index(drop=True)
     finer = rows[rows["half"] == 1].to_dict("records")
     pairs = zip(whole.to_dict("records"), finer, strict=True)
     whole["estimate"] = [estimate_of(*pair) for pair in pairs]
@@ -253,12 +259,12 @@ def at_published_steps(rows: pd.DataFrame) -> pd.DataFrame:
     another; the condition the larger of |κ|, |κη| and 1, of a case that overturns 1, or inf where
     it is near the edge.
     """
-    compared = differences.with_reference(rows)
+    compared = with_reference(rows)
     error = compared["error"].abs().where(compared["agrees"], inf).fillna(0.0)
     falls = compared["exact_outcome"] == "overturned"
     amplitude = compared["amplitude_g"]
     weaker, stronger = (
-        differences.exact_peaks(compared.assign(amplitude_g=amplitude * (1.0 + change)))[0]
+        exact_peaks(compared.assign(amplitude_g=amplitude * (1.0 + change)))
         for change in (-EDGE, EDGE)
     )
     at_edge = np.where(np.isinf(weaker) & np.isinf(stronger), 1.0, inf)

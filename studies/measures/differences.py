@@ -44,11 +44,21 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         With the further columns exact_outcome, exact_peak, agrees, error (relative) and difference
         (of abs(theta)/theta_cr), both nan unless both rocked and survived, false_overturning and
-        missed_overturning, and the columns of `with_conditioning`; of frames OF_FRAMES alone.
+        missed_overturning. kappa = d ln(peak)/d ln(a_p) and kappa_eta = d ln(peak)/d ln(eta) are
+        the factors by which a small relative error of the pulse, or of the velocity ratio at
+        impacts, grows into one of the peak, nan where no peak survives; sensitivity the same of
+        errors of 1e-6 and 1e-4, much larger near the onset and near overturning. Of frames it has
+        OF_FRAMES alone.
     """
-    peak, outcome = exact_peaks(rows)
-    joined = with_conditioning(rows).assign(
-        exact_peak=peak, exact_outcome=[str(getattr(it, "value", it)) for it in outcome]
+    posed, eta, back = _different(rows)
+    peak, outcome = peak_ratios(*posed, restitution=eta)
+    condition = condition_numbers(*posed, restitution=eta)
+    joined = rows.assign(
+        kappa=condition.amplitude[back],
+        kappa_eta=condition.restitution[back],
+        sensitivity=sensitivities(*posed, restitution=eta)[back],
+        exact_peak=peak[back],
+        exact_outcome=[str(getattr(it, "value", it)) for it in outcome[back]],
     )
     found, right = joined["outcome"], joined["exact_outcome"]
     both_rocked = (found == "rocked") & (right == "rocked")
@@ -81,11 +91,10 @@ def posed_cases(cases: pd.DataFrame) -> Posed:
     )
 
 
-def exact_peaks(cases: pd.DataFrame) -> tuple[FloatArray, NDArray[Any]]:
-    """Return the exact peaks and outcomes of the cases, each of which is solved once."""
+def exact_peaks(cases: pd.DataFrame) -> FloatArray:
+    """Return the exact peaks of the cases, each of which is solved once."""
     posed, restitution, back = _different(cases)
-    peak, outcome = peak_ratios(*posed, restitution=restitution)
-    return peak[back], outcome[back]
+    return peak_ratios(*posed, restitution=restitution)[0][back]
 
 
 def _different(cases: pd.DataFrame) -> tuple[Posed, FloatArray | None, NDArray[np.intp]]:
@@ -113,23 +122,6 @@ def conditioning_of_one(
         return {"kappa": math.nan, "sensitivity": math.nan}
     kappa, _ = conditioning(block, motion, start=start)
     return {"kappa": kappa, "sensitivity": sensitivity(block, motion, start=start)}
-
-
-def with_conditioning(cases: pd.DataFrame) -> pd.DataFrame:
-    """Add kappa = d ln(peak)/d ln(a_p) and kappa_eta = d ln(peak)/d ln(eta) of the exact solution.
-
-    They are the factors by which a small relative error of the pulse, or of the velocity ratio at
-    impacts, grows into one of the peak; nan where no peak survives. And sensitivity, the same of
-    errors of 1e-6 and 1e-4: near the onset and near overturning it is much larger.
-    """
-    posed, restitution, back = _different(cases)
-    found = condition_numbers(*posed, restitution=restitution)
-    sensitive = sensitivities(*posed, restitution=restitution)
-    return cases.assign(
-        kappa=found.amplitude[back],
-        kappa_eta=found.restitution[back],
-        sensitivity=sensitive[back],
-    )
 
 
 def conditioning_of(cases: pd.DataFrame) -> pd.Series[float]:
