@@ -43,11 +43,6 @@ class Variant:
         """The engine's preset."""
         return f"{self.engine}:{self.preset}"
 
-    @property
-    def name(self) -> str:
-        """The factor and its value."""
-        return f"{self.factor}: {self.level}" if self.factor else self.level
-
 
 def variants(engine: str) -> Iterator[Variant]:
     """Yield every way to set an engine, each preset as it is before what differs from it."""
@@ -74,14 +69,8 @@ def variants(engine: str) -> Iterator[Variant]:
                 yield from _exchanged(plain[name], factor)
             for item in factor.levels:
                 if name in item.presets:
-                    yield replace(
-                        plain[name],
-                        factor=factor.name,
-                        level=item.name,
-                        settings=item.settings,
-                        scene=item.scene,
-                        trap=item.trap,
-                    )
+                    varied = {each: getattr(item, each) for each in ("settings", "scene", "trap")}
+                    yield replace(plain[name], factor=factor.name, level=item.name, **varied)
 
 
 def preset_values(engine: str, preset: str, names: Sequence[str]) -> dict[str, Any]:

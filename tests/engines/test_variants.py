@@ -30,8 +30,14 @@ def scene(**options):
     return Scene(system=CASE.block, motion=CASE.motion, **{"step": STEP, **options})
 
 
-def of(engine, preset, name):
-    return next(v for v in VARIANTS if (v.engine, v.preset, v.name) == (engine, preset, name))
+def name_of(variant):
+    """Return the engine and the preset of a variant, and its factor with its value."""
+    varied = f"{variant.factor}: {variant.level}" if variant.factor else variant.level
+    return variant.engine, variant.preset, varied
+
+
+def of(*names):
+    return next(variant for variant in VARIANTS if name_of(variant) == names)
 
 
 FIRST = {(v.engine, v.factor): v for v in reversed(VARIANTS)}.values()
@@ -41,7 +47,7 @@ FIRST = {(v.engine, v.factor): v for v in reversed(VARIANTS)}.values()
 @pytest.mark.parametrize(
     "variant",
     [pytest.param(v, marks=[] if v in FIRST else pytest.mark.slow) for v in VARIANTS],
-    ids=lambda v: f"{v.engine}-{v.preset}-{v.name}",
+    ids=lambda v: "-".join(name_of(v)),
 )
 def test_every_variant_answers(variant):
     """Builds, reads back what it set, and gives a response; only a declared trap may fail."""
@@ -57,8 +63,7 @@ def test_every_variant_answers(variant):
 
 
 def test_variants_are_told_apart():
-    names = [(v.engine, v.preset, v.name) for v in VARIANTS]
-    assert len(set(names)) == len(names)
+    assert len(set(map(name_of, VARIANTS))) == len(VARIANTS)
     for name in installed_engines():
         found = {v.factor for v in VARIANTS if v.engine == name}
         assert {factor.name for factor in ENGINES[name].factors} <= found
