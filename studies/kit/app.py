@@ -38,21 +38,11 @@ PLACES = {"compare": "compare.command", "report": "page.report", "readme": "page
 """Command -> its module, where that has another name."""
 REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
 """A refusal of a value, whoever finds it: "width is 0; it must be positive"."""
-LIKENESS = 0.7
-"""How like an option must be to be named as what was meant, its dashes left aside."""
-NARROWEST, WIDEST = 40, 200
-"""Columns of a terminal for which help is set; in two or in ten million it takes for ever."""
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def main(commands: Mapping[str, str]) -> None:
-    """Run the command that the arguments name, and exit.
-
-    Parameters
-    ----------
-    commands : mapping
-        Name of a command -> what it is for, in a line; its module of `studies` has its function.
-    """
+    """Run the command that the arguments name, and exit; each has a line that says its purpose."""
     for number in ENDING:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _end)
@@ -71,8 +61,8 @@ def settle_environment() -> None:
     """Take away what would stop a library, and widths in which help cannot be set."""
     for name in ("MPLBACKEND", "NUMBA_NUM_THREADS"):
         os.environ.pop(name, None)
-    columns = shutil.get_terminal_size().columns
-    os.environ["COLUMNS"] = str(min(max(columns, NARROWEST), WIDEST))
+    # in two columns or in ten million, help takes for ever
+    os.environ["COLUMNS"] = str(min(max(shutil.get_terminal_size().columns, 40), 200))
 
 
 def _end(number: int, _: Any) -> None:
@@ -121,12 +111,17 @@ def make_app(commands: Mapping[str, str], chosen: str = "") -> App:
     """Return the command line; the chosen command is loaded, others when they are asked for."""
     from cyclopts import App, Parameter
 
+    def version() -> str:
+        from studies.kit.store import project_version
+
+        return project_version()
+
     app = App(
         name="rocking",
         help="A rocking block: the exact solution, its linearizations, physics engines.",
         help_format="markdown",
         help_formatter="default",
-        version=_version,
+        version=version,
         default_parameter=Parameter(negative=()),
         suppress_keyboard_interrupt=False,
     )
@@ -139,19 +134,12 @@ def make_app(commands: Mapping[str, str], chosen: str = "") -> App:
     return app
 
 
-def _version() -> str:
-    from studies.kit.store import project_version
-
-    return project_version()
-
-
 def _answer(commands: Mapping[str, str], arguments: Sequence[str]) -> int:
     from cyclopts import CycloptsError, UnknownOptionError
 
     postpone("pandas")
     if "--version" in arguments and len(arguments) > 1:
-        words = f"--version is one of {len(arguments)} arguments; it must stand alone"
-        return say.refuse(words)
+        return say.refuse(f"--version is one of {len(arguments)} arguments; it must stand alone")
     if arguments and arguments[0] in RETIRED:
         instead = RETIRED[arguments[0]]
         words = f"use {instead}" if instead else "see the changelog"
@@ -184,11 +172,9 @@ def _unknown_option(error: UnknownOptionError) -> str:
     from difflib import get_close_matches
 
     given = (error.token.keyword or error.token.value).partition("=")[0]
-    options = [
-        name for each in error.argument_collection for name in each.names if name[:2] == "--"
-    ]
-    words = {name.lstrip("-"): name for name in options}
-    near = [words[word] for word in get_close_matches(given.lstrip("-"), words, 1, LIKENESS)]
+    names = [name for each in error.argument_collection for name in each.names]
+    options = {name.lstrip("-"): name for name in names if name.startswith("--")}
+    near = [options[word] for word in get_close_matches(given.lstrip("-"), options, 1, 0.7)]
     command = " ".join(error.command_chain or ())
-    able = f"did you mean {near[0]}?" if near else f"it takes {', '.join(options)}"
+    able = f"did you mean {near[0]}?" if near else f"it takes {', '.join(options.values())}"
     return f"{given} is no option of {command or 'rocking'}; {able}"

@@ -27,8 +27,6 @@ from studies.sources.registry import (
 T = TypeVar("T")
 MOST, LARGEST = 10**9, sys.float_info.max
 """The largest whole number that an argument takes, and the largest number."""
-LEAST_STEP = 1e-7
-"""The smallest step p dt: ten million of them last as long as 1/p."""
 
 
 @contextmanager
@@ -49,8 +47,7 @@ def _read(allowed: str, convert: Callable[[type, str], Any]) -> Any:
         try:
             return convert(type_, token.value)
         except ValueError as error:
-            name = token.keyword or "FOLDER"  # an argument that is no option has no keyword
-            beside = ""
+            name, beside = token.keyword or "FOLDER", ""  # only an option has a keyword
             if type_ is float and "," in token.value:
                 beside = ", with a decimal point"
             elif type_ is float and underflows(token.value):
@@ -86,10 +83,11 @@ def figures(*known: int) -> Parameter:
     """Return what makes an argument take some of the paper's figures, separated by spaces."""
 
     def convert(_: type, tokens: Sequence[Token]) -> tuple[int, ...]:
+        words = [str(figure) for figure in known]
         for token in tokens:
-            if token.value not in map(str, known):
-                words = ", ".join(map(str, known))
-                raise BadInputError(f"{token.keyword} is {token.value!r}; it must be among {words}")
+            if token.value not in words:
+                among = f"it must be among {', '.join(words)}"
+                raise BadInputError(f"{token.keyword} is {token.value!r}; {among}")
         return tuple(int(token.value) for token in tokens)
 
     return Parameter(
@@ -111,20 +109,12 @@ Finite = Annotated[float, _number("a finite number", -LARGEST)]
 Count = Annotated[int, _number(f"a positive whole number up to {MOST}", 1, MOST)]
 TimeLimit = Annotated[float, _number("a positive number of seconds up to 1e9", math.ulp(0.0), 1e9)]
 Step = Annotated[
-    float,
-    _number(
-        f"a positive number of at least {LEAST_STEP:g}: {1 / LEAST_STEP:g} of them make up 1/p",
-        LEAST_STEP,
-    ),
+    float, _number("a positive number of at least 1e-07: 1e+07 of them make up 1/p", 1e-7)
 ]
-HalfCycles = Annotated[
-    int,
-    _number(
-        f"a positive whole number up to {MOST_HALF_CYCLES}, as the times of all are held in memory",
-        1,
-        MOST_HALF_CYCLES,
-    ),
-]
+_CYCLES = (
+    f"a positive whole number up to {MOST_HALF_CYCLES}, as the times of all are held in memory"
+)
+HalfCycles = Annotated[int, _number(_CYCLES, 1, MOST_HALF_CYCLES)]
 Place = Annotated[Path, _read("a path; one that begins with a dash is written ./-name", _path)]
 Out = Annotated[Place, Parameter(help="Folder for the results; made if there is none.")]
 Yes = Annotated[bool, Parameter(help="Begin even what takes longer than a day.")]
@@ -136,17 +126,7 @@ several_or_none = Parameter(consume_multiple=1)
 def sources_option(
     first: str = "", names: Iterable[str] = tuple(SOURCES), *, default: bool = True
 ) -> Parameter:
-    """Return what makes an argument take names of sources.
-
-    Parameters
-    ----------
-    first : str, optional
-        What its help says first.
-    names : iterable of str, optional
-        The names that its help lists.
-    default : bool, optional
-        Whether it shows a default.
-    """
+    """Return what makes an argument take sources; its help says `first`, and lists `names`."""
     words = ", ".join(f'"{word}"' for word in GROUPS)
     return Parameter(
         consume_multiple=True,
@@ -205,12 +185,7 @@ def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
 def refuse_given(options: Mapping[str, object], allowed: str) -> None:
     """Refuse options that say nothing beside the others that were given.
 
-    Parameters
-    ----------
-    options : mapping
-        Name -> value; None, or False of a flag, where it was not given.
-    allowed : str
-        When it may be given, as the refusal ends: "only without --records".
+    One that was not given is None, or False; `allowed` ends the refusal: "only without --records".
     """
     given = [
         f"{_option(name)} is {value}"
@@ -245,18 +220,14 @@ def _option(name: str) -> str:
 
 def check_plot(path: Path | None) -> None:
     """Refuse a file to which no figure can be written."""
-    if path is None:
-        return
-    if path.suffix not in (".png", ".pdf", ".svg"):
+    if path is not None and path.suffix not in (".png", ".pdf", ".svg"):
         raise BadInputError(f"--plot is {str(path)!r}; it must end in .png, .pdf or .svg")
-    check_writable("--plot", path)
+    if path is not None:
+        check_writable("--plot", path)
 
 
 def check_writable(argument: str, path: Path) -> None:
-    """Refuse a file that cannot be written, before what takes time begins.
-
-    A file that is there stays as it is; of a new one nothing is left behind.
-    """
+    """Refuse a file that cannot be written; one that is there stays, and no new one is left."""
     try:
         if path.exists() and not path.is_file():
             raise OSError(errno.EINVAL, "it is no file")  # a pipe would be waited for

@@ -48,20 +48,7 @@ def _work(jobs: Sequence[Job], measure: Measure, limit_s: float) -> list[Any]:
 
 
 def on_cluster(address: str, limit_s: float, jobs: Sequence[Job], measure: Measure) -> Rows:
-    """Yield the number and row of each job as `studies.kit.run.local` does, from a cluster.
-
-    Parameters
-    ----------
-    address : str
-        Of the scheduler, as in tcp://127.0.0.1:8786.
-    limit_s, jobs, measure
-        As there; each worker runs one process.
-
-    Raises
-    ------
-    BadInputError
-        If there is no scheduler, no worker, or one that would make other rows.
-    """
+    """Yield the number and row of each job as `local` does, from a cluster that makes such rows."""
     try:
         from distributed import Client
 
@@ -95,16 +82,12 @@ def on_cluster(address: str, limit_s: float, jobs: Sequence[Job], measure: Measu
                     continue
                 words = "it has no worker any more"
                 raise BadInputError(f"--cluster is {address!r}; {words}") from None
-            left -= 1
-            yield from _rows_of(task, [(n, jobs[n]) for n in tasks[task]], measure)
-
-
-def _rows_of(task: Any, part: Sequence[tuple[int, Job]], measure: Measure) -> Rows:
-    if task.status == "finished":
-        yield from ((part[place][0], row) for place, row in task.result())
-        return
-    words = f"every worker that ran this case died: {task.exception()}"
-    yield from ((n, lost_row(measure, job, Response.failure(words))) for n, job in part)
+            left, part = left - 1, tasks[task]
+            if task.status == "finished":
+                yield from ((part[place], row) for place, row in task.result())
+                continue
+            lost = Response.failure(f"every worker that ran this case died: {task.exception()}")
+            yield from ((n, lost_row(measure, jobs[n], lost)) for n in part)
 
 
 def place_of(running: Computing, *, at_once: bool = False) -> Place:

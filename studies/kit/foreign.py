@@ -16,7 +16,7 @@ from types import MappingProxyType
 from typing import Any
 
 from engines import ENGINES, registry
-from engines.declaration import Engine
+from engines.declaration import Engine, Preset
 from engines.parts.settings import check
 from engines.registry import UnloadableError
 from studies.kit.workers import Lost, answers
@@ -25,8 +25,6 @@ from studies.kit.workers import Lost, answers
 copyreg.dispatch_table[MappingProxyType] = lambda it: (dict, (dict(it),))
 
 PACKAGES = ("analytic", "engines", "studies")
-LOADING_S = 60.0
-"""How long an engine of another package may take to be loaded [s]."""
 
 
 @contextmanager
@@ -48,15 +46,12 @@ def declared(name: str) -> Engine:
 def apart(call: Callable[..., Any], engine: str, *given: Any) -> Any:
     """Return what a function answers, of an engine, in a process of its own.
 
-    Raises
-    ------
-    UnloadableError
-        If it raises, or its process ends or takes longer than `LOADING_S`.
+    UnloadableError if it raises, or its process ends or takes longer than a minute.
     """
-    ((_, answer),) = answers(_tried, [(call, engine, *given)], 1, LOADING_S)
-    found, problem = answer if not isinstance(answer, Lost) else (None, answer.why)
+    ((_, answer),) = answers(_tried, [(call, engine, *given)], 1, 60.0)
     if isinstance(answer, Lost):
-        problem = f"engine {engine!r} cannot be loaded: {problem}"
+        raise UnloadableError(f"engine {engine!r} cannot be loaded: {answer.why}")
+    found, problem = answer
     if problem:
         raise UnloadableError(problem)
     return found
@@ -94,15 +89,16 @@ def _declared_here(name: str) -> Engine:
     """Return an engine as plain data."""
     engine = ENGINES[name]
     tops = {_top(what) for what in (engine.build, *engine.builders.values())} - {*PACKAGES}
-    loaded = [
-        getattr(module, "__file__", None)
-        for module_name, module in list(sys.modules.items())
-        if module_name.partition(".")[0] in tops
-    ]
-    files = tuple(sorted(Path(file) for file in loaded if isinstance(file, str)))
+    loaded = [module for of, module in list(sys.modules.items()) if of.partition(".")[0] in tops]
+    places = [getattr(module, "__file__", None) for module in loaded]
+    files = tuple(sorted(Path(file) for file in places if isinstance(file, str)))
 
     def call(name: str = "") -> Call:
         return Call(engine.name, name, files)
+
+    def preset(it: Preset) -> Preset:
+        builders = {key: call() for key in it.builders}
+        return replace(it, settings=_settings(it.settings), builders=builders)
 
     return replace(
         engine,
@@ -111,14 +107,7 @@ def _declared_here(name: str) -> Engine:
         spring=engine.spring and call("spring"),
         builders={key: call() for key in engine.builders},
         own_step="",  # it would be imported
-        presets=tuple(
-            replace(
-                each,
-                settings=_settings(each.settings),
-                builders={key: call() for key in each.builders},
-            )
-            for each in engine.presets
-        ),
+        presets=tuple(map(preset, engine.presets)),
     )
 
 
@@ -131,21 +120,18 @@ def _settings(settings: Any) -> Any:
     kind = type(settings)
     if kind.__module__.partition(".")[0] in PACKAGES:
         return settings
-    described = [
-        (
-            *(item.name, None if item.default is MISSING else item.default),
-            *(item.metadata.get("allowed"), getattr(settings, item.name)),
-        )
-        for item in fields(settings)
-    ]
+    described = []
+    for item in fields(settings):
+        default = None if item.default is MISSING else item.default
+        value = getattr(settings, item.name)
+        described.append((item.name, default, item.metadata.get("allowed"), value))
     return alike(kind.__module__, kind.__qualname__, described)
 
 
 def alike(module: str, name: str, described: list[tuple[str, Any, Any, Any]]) -> Any:
     """Return settings that are called, and checked, as those of a class that is not loaded here.
 
-    They are described by their names, defaults, what is `engines.parts.settings.Allowed`, and
-    values.
+    Each is described by its name, its default, its `engines.parts.settings.Allowed`, and its value.
     """
     items = [
         (item, Any, field(default=default, metadata={"allowed": allowed} if allowed else {}))

@@ -9,6 +9,7 @@ no row old.
 import ast
 import hashlib
 import platform
+import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
@@ -23,18 +24,13 @@ from studies.sources.registry import Source
 
 ENGINES_AT = Path(engines.__file__).parent
 ROOT = ENGINES_AT.parent
-SHARED = ("parts", "run", "watching")
-"""Folders of `engines` that all engines share, beside the files in it."""
 COMPUTING = ("numpy", "scipy", "numba")
 """Packages that a number may depend on."""
 NOT_INSTALLED = "not installed"
-ASIDE = ("kit", "drawing", "page")
-"""Parts of `studies` that no number depends on."""
-DESCRIBING = ("block", "checks", "frame", "slide", "motion", "record", "response")
-"""Modules of `analytic` that an engine's answer depends on."""
+COUNTING = re.compile(r"studies\.(?!(kit|drawing|page)\b)")
+"""Modules of `studies` that a number may depend on."""
 ANSWER = ROOT / "studies" / "kit" / "jobs.py"
 SOURCES = ROOT / "studies" / "sources"
-SHOWN = 3
 
 Maker = Mapping[str, str]
 """What made a row: what it depends on -> its version, or a digest of its code."""
@@ -77,16 +73,13 @@ def files_of(module: str) -> frozenset[Path]:
     pending = [module]
     while pending:
         path = ROOT / pending.pop().replace(".", "/")
-        file = next((each for each in (path.with_suffix(".py"), path / "__init__.py")
-                     if each.is_file()), None)  # fmt: skip
-        if file is None or file in found:
-            continue
-        found.add(file)
-        for node in ast.parse(file.read_bytes()).body:
-            if not isinstance(node, ast.ImportFrom) or not (name := node.module or ""):
+        for file in {path.with_suffix(".py"), path / "__init__.py"} - found:
+            if not file.is_file():
                 continue
-            if name.startswith("studies.") and name.split(".")[1] not in ASIDE:
-                pending += [name, *(f"{name}.{each.name}" for each in node.names)]
+            found.add(file)
+            for node in ast.parse(file.read_bytes()).body:
+                if isinstance(node, ast.ImportFrom) and COUNTING.match(name := node.module or ""):
+                    pending += [name, *(f"{name}.{each.name}" for each in node.names)]
     return frozenset(found)
 
 
@@ -112,10 +105,12 @@ def maker_of(source: Source, measure: Callable[..., Any]) -> Maker:
     if not source.engine:
         made["analytic"] = _reference()
         return {**made, "studies": code_in(*measured, SOURCES)}
-    known = (ROOT / "analytic" / f"{name}.py" for name in DESCRIBING)
+    describing = ("block", "checks", "frame", "slide", "motion", "record", "response")
+    known = (ROOT / "analytic" / f"{name}.py" for name in describing)
     # what a study measures may take the exact solution beside the engine's answer
     made["analytic"] = code_in(*known) if measured == {ANSWER} else _reference()
-    made["engines"] = code_in(*ENGINES_AT.glob("*.py"), *(ENGINES_AT / name for name in SHARED))
+    shared = (ENGINES_AT / name for name in ("parts", "run", "watching"))
+    made["engines"] = code_in(*ENGINES_AT.glob("*.py"), *shared)
     made["studies"] = code_in(*measured, SOURCES / "registry.py")
     build = source.declared.build
     files = getattr(build, "files", None) or _engine_files(build.__module__)
@@ -142,7 +137,7 @@ def changed(then: Maker, now: Maker) -> list[str]:
 def why(stale: Iterable[tuple[str, Maker, Maker]]) -> str:
     """Say of rows that are computed again how many there are of each source, and why."""
     counts = Counter(
-        (source, tuple(_said(name, then, now) for name in changed(then, now)[:SHOWN]))
+        (source, tuple(_said(name, then, now) for name in changed(then, now)[:3]))
         for source, then, now in stale
     )
     return "; ".join(

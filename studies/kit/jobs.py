@@ -27,54 +27,26 @@ the separatrix that it takes longer, it would be within e^-40 of it, which no do
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Question:
-    """What stands on the base, how that moves, and how long it is watched.
-
-    Attributes
-    ----------
-    system : System
-        A block, a frame or a sliding block.
-    motion : Motion
-    start : (float, float)
-        Rotation [rad] and its rate [rad/s] at time zero.
-    duration : float, optional
-        Time of observation [s]; by default until the peak is decided.
-    times : ndarray, optional
-        Times [s] of the history.
-    """
+    """What stands on the base, how that moves, and how long it is watched."""
 
     system: System
     motion: Motion
-    start: tuple[float, float] = (0.0, 0.0)
-    duration: float | None = None
-    times: FloatArray | None = None
+    start: tuple[float, float] = (0.0, 0.0)  # rotation [rad] and its rate [rad/s] at time zero
+    duration: float | None = None  # [s]; by default until the peak is decided
+    times: FloatArray | None = None  # of the history [s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
-    """One question to one source.
+    """One question to one source, which must exist and take the options.
 
-    Attributes
-    ----------
-    labels : mapping
-        The first columns of the row.
-    case : Question
-    source : str
-        Name of the source, as the user wrote it.
-    options : mapping
-        Further settings of the source.
-    lost : Response, optional
-        What `ask` returns where the process that asked the source has ended without an answer.
-
-    Raises
-    ------
-    BadInputError
-        If the source does not exist, does not take an option, or does not allow its value.
+    Where the process that asked has ended without an answer, `ask` returns what `lost` is.
     """
 
-    labels: Mapping[str, Any]
+    labels: Mapping[str, Any]  # the first columns of the row
     case: Question
-    source: str
-    options: Mapping[str, Any] = field(default_factory=dict)
+    source: str  # its name, as the user wrote it
+    options: Mapping[str, Any] = field(default_factory=dict)  # further settings of the source
     lost: Response | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -142,10 +114,7 @@ def ask(job: Job) -> Response:
 
 
 def summary(response: Response) -> Row:
-    """Return the columns that every row has: outcome, peak_ratio, impacts, steps, wall_s, message.
-
-    The number of impacts, the run time [s], and the message in one line.
-    """
+    """Return the columns that every row has: the message in one line, the run time in s."""
     return {
         "outcome": response.outcome.value,
         "peak_ratio": float(response.peak_ratio),

@@ -27,16 +27,10 @@ from studies.kit.arguments import (
 from studies.kit.store import usable_cores
 from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort, resolve
 
-DAY_S = 86_400.0
-"""What takes longer is begun only with --yes."""
 CASE_S = {"model": 1e-3, "solver": 5e-3, "peer": 0.05, "engine": 0.1}
 """About what a case takes a source of each kind, its row in the table included [s]."""
 CASE_BYTES, PROCESS_BYTES = 4e3, 2e8
 """About what a case with its row holds of memory, and what a process with an engine does."""
-CONTAINER = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
-"""Where Linux says how much memory a container may use."""
-SHORTEST_S, LONGEST_S = 1e-6, 1.0
-"""Steps [s] for which settings are written out."""
 
 
 @Parameter(name="*")
@@ -79,16 +73,7 @@ class Computing:
     ) -> None:
         """Refuse more cases than fit into memory, or, without a yes, into a day.
 
-        Parameters
-        ----------
-        asked : str
-            What the user asked for, as the refusal begins.
-        cases : int
-        sources : sequence of str
-            Who is asked about each case.
-        yes : bool
-            Whether it is begun even if it takes longer than a day.
-        effort : Effort, optional
+        What the user asked for begins the refusal; each source is asked about each case.
         """
         refuse_excess(asked, cases * len(sources) * CASE_BYTES)
         seconds = 0.0
@@ -133,12 +118,11 @@ class EffortOptions(Effort):
 
     def refuse_idle(self, sources: Sequence[str]) -> None:
         """Refuse an option that none of the sources takes."""
-        asked = [resolve(name) for name in sources]
-        takers = {
-            "step": ("a solver or an engine", any(source.stepping for source in asked)),
-            "accuracy": ("an engine that chooses its steps", any(it.accurate for it in asked)),
-        }
-        for name, (words, taken) in takers.items():
+        for name, taking, words in (
+            ("step", "stepping", "a solver or an engine"),
+            ("accuracy", "accurate", "an engine that chooses its steps"),
+        ):
+            taken = any(getattr(resolve(source), taking) for source in sources)
             if (value := getattr(self, name)) is not None and not taken:
                 raise BadInputError(f"--{name} is {value}; --sources must name {words}")
 
@@ -161,13 +145,7 @@ class Yours:
     dt: Positive | None = None
 
     def options(self, sources: Sequence[str], system: System) -> dict[str, dict[str, float]]:
-        """Return the options that this means for each source: friction, and step, p dt.
-
-        Raises
-        ------
-        BadInputError
-            If an engine whose steps are not equal is given one, or no source takes what is given.
-        """
+        """Return the options that this means for each source: friction, and step, p dt."""
         asked = {name: resolve(name) for name in sources}
         idle = not any(source.engine for source in asked.values())
         if self.friction is not None and idle and not isinstance(system, SlidingBlock):
@@ -182,14 +160,11 @@ class Yours:
             if self.dt is None or not source.stepping:
                 continue
             if source.accurate:
-                equal = [
-                    f"{source.engine}:{use.name}"
-                    for use in source.declared.presets
-                    if use.stepping is Stepping.FIXED
-                ]
+                presets = [it for it in source.declared.presets if it.stepping is Stepping.FIXED]
+                equal = " or ".join(f"{source.engine}:{it.name}" for it in presets)
+                words = f"{name} takes {source.used.stepping.value}: ask {equal}"
                 raise BadInputError(
-                    f"--dt is {self.dt:g}; it must come with equal steps, and {name} takes "
-                    f"{source.used.stepping.value}: ask {' or '.join(equal)}"
+                    f"--dt is {self.dt:g}; it must come with equal steps, and {words}"
                 )
             chosen[name]["step"] = self.dt * system.p
         return chosen
@@ -197,29 +172,24 @@ class Yours:
 
 def refuse_days(asked: str, seconds: float, yes: bool) -> None:
     """Refuse what takes longer than a day [s], unless that is wanted; `asked` begins the line."""
-    if seconds > DAY_S and not yes:
-        days = f"{seconds / DAY_S:.1f} days"
-        raise BadInputError(f"{asked}; that takes about {days}, and more than one needs --yes")
+    if (days := seconds / 86_400.0) > 1.0 and not yes:
+        words = f"that takes about {days:.1f} days, and more than one needs --yes"
+        raise BadInputError(f"{asked}; {words}")
 
 
 def refuse_excess(asked: str, held: float) -> None:
-    """Refuse what needs more memory [byte] than there is; `asked` begins the line."""
-    if held > (there := memory()):
+    """Refuse what needs more memory [byte] than there is, or than its container may use."""
+    limits = [float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))]
+    for name in ("memory.max", "memory/memory.limit_in_bytes"):
+        # a container without a limit says "max"
+        with contextlib.suppress(OSError, ValueError):
+            limits.append(float(int(Path("/sys/fs/cgroup", name).read_text())))
+    if held > (there := min(limits)):
         needs = f"that needs about {held / 1e9:.0f} GB of memory"
         raise BadInputError(f"{asked}; {needs}, and at most {there / 1e9:.0f} GB are there")
 
 
-def memory() -> float:
-    """Return the memory of this machine, or what its container may use of it [byte]."""
-    limits = [os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")]
-    for name in CONTAINER:
-        # a container without a limit says "max"
-        with contextlib.suppress(OSError, ValueError):
-            limits.append(int(Path(name).read_text()))
-    return float(min(limits))
-
-
 def check_written(dt: float | None) -> None:
     """Refuse a step [s] for which no settings are written out."""
-    if dt is not None and not SHORTEST_S <= dt <= LONGEST_S:
-        raise BadInputError(f"--dt is {dt:g}; it must be from {SHORTEST_S:g} to {LONGEST_S:g} s")
+    if dt is not None and not 1e-6 <= dt <= 1.0:
+        raise BadInputError(f"--dt is {dt:g}; it must be from 1e-06 to 1 s")

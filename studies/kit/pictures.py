@@ -49,9 +49,7 @@ def write_points(drawing: Figure, file: BinaryIO) -> None:
     few.save(file, "png", optimize=True, dpi=(DPI, DPI))
 
 
-def save_all(drawings: Mapping[str, Figure], folder: Path) -> list[Path]:
-    """Write the figures of a study under their names into its folder; return the files."""
-    paths = [folder / f"{name}.png" for name in drawings]
-    for drawing, path in zip(drawings.values(), paths, strict=True):
-        save(drawing, path)
-    return paths
+def save_all(drawings: Mapping[str, Figure], folder: Path) -> None:
+    """Write the figures of a study under their names into its folder."""
+    for name, drawing in drawings.items():
+        save(drawing, folder / f"{name}.png")

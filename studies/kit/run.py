@@ -24,19 +24,14 @@ from studies.cases.refusal import BadInputError
 from studies.kit.identity import Maker, maker_of
 from studies.kit.jobs import Job, Row, ask, unanswered
 from studies.kit.say import say
-from studies.kit.store import Store
+from studies.kit.store import Store, labels_of
 from studies.kit.workers import MEMORY_BYTES, Lost, answers
 
 FEW = 32
 """Jobs up to which to interpret takes less time than to load what is compiled."""
-COMPILING_S = 1800.0
-"""Nothing takes longer to compile [s]."""
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 """Signals that end a run."""
-LABELS = (
-    *("name", "record", "scale"),
-    *("figure", "panel", "case", "aspect", "width_m", "omega_over_p"),
-)
+LABELS = ["name", "record", "scale", "figure", "panel", "case", "aspect", "width_m", "omega_over_p"]
 """Columns that name a failed case."""
 
 Measure = Callable[[Job], Row]
@@ -56,21 +51,8 @@ def local(
 ) -> Rows:
     """Yield the number and row of each job: models in this process, engines in their own.
 
-    Parameters
-    ----------
-    jobs : sequence of Job
-    measure : callable
-        What makes of a job the columns of its row; a function of a module.
-    workers, limit_s : int, float
-        As for `studies.kit.workers.answers`.
-    at_once : bool, optional
-        Whether somebody waits for the rows and nobody for their run times: of a few jobs, nothing
-        is compiled.
-
-    Raises
-    ------
-    OSError
-        If no process can be started.
+    The measure is a function of a module. If somebody waits for the rows and nobody for their run
+    times (`at_once`), nothing is compiled for a few jobs.
     """
     many = not at_once or len(jobs) > FEW
     if sys.stderr.isatty():
@@ -96,7 +78,8 @@ def local(
     for place, row in answers(_measured, tasks, min(workers, len(tasks)), limit_s):
         number = apart[place]
         if isinstance(row, Lost):
-            row = lost_row(measure, jobs[number], _response_of(row))
+            reason = Reason.UNDECIDED if row.late else Reason.ERROR
+            row = lost_row(measure, jobs[number], Response.failure(row.why, reason=reason))
         yield number, row
 
 
@@ -126,12 +109,6 @@ def _measured(measure: Measure, job: Job, many: bool) -> Row:
     return row
 
 
-def _response_of(lost: Lost) -> Response:
-    if lost.late:
-        return Response.failure(lost.why, reason=Reason.UNDECIDED)
-    return Response.failure(lost.why)
-
-
 def lost_row(measure: Measure, job: Job, response: Response) -> Row:
     """Return the row of a job whose process has ended without an answer."""
     with suppress(Exception):  # what ended the process may be the measure itself
@@ -153,10 +130,8 @@ def _short(job: Job) -> Job:
 
 def _compile_for(jobs: Sequence[Job]) -> None:
     """Compile what the engines of jobs need, before any time limit holds; others then load it."""
-    first: dict[str, Job] = {}
-    for job in jobs:
-        if job.asked.engine and job.asked.declared.installed:
-            first.setdefault(job.source, job)
+    able = [job for job in jobs if job.asked.engine and job.asked.declared.installed]
+    first = {job.source: job for job in reversed(able)}
     if not first:
         return
     if Kernel.tell is not None and not are_compiled(PACKAGE):
@@ -164,7 +139,7 @@ def _compile_for(jobs: Sequence[Job]) -> None:
     ahead = [_short(job) for job in first.values() if job.asked.declared.compiles]
     tasks = [(compile_monitor,), *((ask, job) for job in ahead)]
     with suppress(Exception):  # the cases will say what is wrong
-        list(answers(_call, tasks, 1, COMPILING_S))
+        list(answers(_call, tasks, 1, 1800.0))  # [s]; nothing takes longer to compile
 
 
 def _call(call: Callable[..., Any], *given: Any) -> None:
@@ -181,24 +156,10 @@ def run(
 ) -> list[Row]:
     """Run the jobs that a store has no row of, and return the rows of all in their order.
 
-    Parameters
-    ----------
-    jobs : sequence of Job
-    measure : callable
-        What makes of a job the columns that follow its labels and source, outcome among them.
-    place : callable, optional
-        Where they run: `place_of` options, or `here`.
-    store : Store, optional
-        Gets each row as soon as there is one; equal jobs share a row.
-    also : sequence of Path, optional
-        Folders whose rows are taken over.
-
-    Raises
-    ------
-    BadInputError
-        If a folder, a cluster or an option cannot be used.
+    The store gets each row as soon as there is one, and takes over those of the folders in `also`;
+    equal jobs share a row.
     """
-    labels = [{**job.labels, "source": job.source} for job in jobs]
+    labels = [labels_of(job) for job in jobs]
     if store is None:
         rows = dict(place(jobs, measure))
         return [{**labels[number], **rows[number]} for number in range(len(jobs))]
@@ -208,7 +169,8 @@ def run(
     done = store.kept(by_key, makers)
     for folder in also:
         store.take(folder, by_key, makers)
-    done = store.kept(by_key, makers) if also else done
+    if also:
+        done = store.kept(by_key, makers)
     left = [number for number, key in enumerate(keys) if key not in done]
     with (
         _going_on(store, done, len(jobs)),
@@ -224,10 +186,8 @@ def run(
 
 def makers_of(jobs: Sequence[Job], measure: Measure) -> dict[str, Maker]:
     """Return what makes the rows of each source now."""
-    return {
-        name: maker_of(job.asked, measure)
-        for name, job in {job.source: job for job in jobs}.items()
-    }
+    sources = {job.source: job for job in jobs}
+    return {name: maker_of(job.asked, measure) for name, job in sources.items()}
 
 
 @contextmanager

@@ -18,11 +18,8 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-LONGEST_WORD, LONGEST_LINE = 255, 1000
-"""Letters of a refusal beyond which the middle of a word, and of the line, is left out."""
 WIDTH, SHOWN, SMALL = 99, 60, 1e-2
 """Letters of a line of text, rows of a table shown as text, and what is shown as a power of ten."""
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def refuse(message: str) -> int:
@@ -39,8 +36,7 @@ def say(line: str) -> None:
 
 def brief(message: str) -> str:
     """Return a message in one line that a terminal can show, whatever values it repeats."""
-    words = (_shortened(word, LONGEST_WORD) for word in message.split())
-    line = _shortened(" ".join(words), LONGEST_LINE)
+    line = _shortened(" ".join(_shortened(word, 255) for word in message.split()), 1000)
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in line)
 
 
@@ -112,7 +108,7 @@ def power(value: float) -> str:
     if not value:
         return "0"
     digits, exponent = f"{value:.1e}".split("e")
-    ten = "10" + str(int(exponent)).translate(SUPERSCRIPTS)
+    ten = "10" + str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
     return ten if digits == "1.0" else f"{digits.removesuffix('.0')}·{ten}"
 
 
@@ -167,15 +163,12 @@ def in_columns(table: pd.DataFrame) -> str:
     numeric = [kind.kind in "biuf" for kind in table.dtypes]
     rows = [list(map(str, table.columns)), *table.head(SHOWN).map(number).to_numpy().tolist()]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = [
-        "  ".join(
-            word.rjust(width) if right else word.ljust(width)
-            for word, width, right in zip(row, widths, numeric, strict=True)
-        ).rstrip()
-        for row in rows
-    ]
-    more = len(table) - SHOWN
-    return "\n".join([*lines, *([f"and {more} more rows"] if more > 0 else [])])
+    sides = [">" if right else "<" for right in numeric]
+    form = "  ".join(f"{{:{side}{width}}}" for side, width in zip(sides, widths, strict=True))
+    lines = [form.format(*row).rstrip() for row in rows]
+    if len(table) > SHOWN:
+        lines.append(f"and {len(table) - SHOWN} more rows")
+    return "\n".join(lines)
 
 
 def as_text(finding: str, tables: Mapping[str, pd.DataFrame]) -> str:

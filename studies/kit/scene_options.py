@@ -1,10 +1,10 @@
 """Options of a scene: what stands on the base, how that moves, and from which start."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, TypeAlias
 
 from cyclopts import Parameter
 
@@ -34,24 +34,13 @@ from studies.kit.arguments import (
     required,
 )
 
-OF_A_PULSE = ("amplitude", "omega", "pulse", "half_cycles", "phase")
-OF_A_RECORD = ("units", "scale", "pga", "baseline")
-
 MOST_TIME, MOST_STEPS = 1e6, 1e9
 """How long a block is watched at most, in units of 1/p, and in how many steps: 1e9 take the fastest
 solver minutes and an engine hours."""
 
-MOST_DEGREES = 90.0
-"""Tilt beyond which it was not meant in degrees either."""
-
 Pulse = Literal["half-sine", "full-sine"]
-
-
-class Posed(NamedTuple):
-    """A motion of the base, and theta [rad] and its rate [rad/s] at t = 0."""
-
-    motion: Motion
-    start: tuple[float, float]
+Posed: TypeAlias = tuple[Motion, tuple[float, float]]
+"""A motion of the base, and theta [rad] and its rate [rad/s] at t = 0."""
 
 
 @Parameter(name="*")
@@ -112,26 +101,20 @@ class Excitation:
     degrees: bool = False
 
     def pose(self, block: System) -> Posed:
-        """Return the motion and the start that the options mean for a block.
-
-        Raises
-        ------
-        BadInputError
-            If they contradict one another, or a value is not allowed.
-        """
+        """Return the motion and the start that the options mean for a block."""
         motion = self._motion()
-        return Posed(motion, self._start(block, motion))
+        return motion, self._start(block, motion)
 
-    def _given(self, names: Iterable[str]) -> dict[str, object]:
+    def _given(self, *names: str) -> dict[str, object]:
         return {name: getattr(self, name) for name in names}
 
     def _motion(self) -> Motion:
+        pulse = self._given("amplitude", "omega", "pulse", "half_cycles", "phase")
         if self.record is not None:
-            refuse_given(self._given(OF_A_PULSE), "only without --record")
+            refuse_given(pulse, "only without --record")
             return self._recorded(self.record)
-        refuse_given(self._given(OF_A_RECORD), "only with --record")
-        pulse = any(value is not None for value in self._given(OF_A_PULSE).values())
-        released = (self.tilt or self.rate) and not pulse
+        refuse_given(self._given("units", "scale", "pga", "baseline"), "only with --record")
+        released = (self.tilt or self.rate) and set(pulse.values()) == {None}
         return Still() if released else self._pulse()
 
     def _recorded(self, path: Path) -> Record:
@@ -163,25 +146,22 @@ class Excitation:
             tilt = self.tilt or 0.0
             side = f"{90.0 if self.degrees else 0.5 * math.pi / block.alpha:.6g}"
             unit = "°" if self.degrees else "α"
-            asked = not self.degrees and abs(tilt) < MOST_DEGREES
+            asked = not self.degrees and abs(tilt) < 90.0
             meant = f"; {tilt:g}°? --tilt {tilt:g} --degrees" if asked else ""
             raise BadInputError(
                 f"--tilt is {tilt:g}; it must lie between -{side} and {side} {unit}, "
                 f"where the side of the block lies on the ground{meant}"
             )
-        starts = (
+        for name, given, value, least in (
             ("tilt", self.tilt, theta, LEAST_TILT * block.alpha),
             ("rate", self.rate, rate, LEAST),
-        )
-        for name, given, value, least in starts:
+        ):
             if given and not least <= abs(value) <= MOST:
                 allowed = f"0, or of a size {least:.3g} to {MOST:g} in rad and s"
                 raise BadInputError(f"--{name} is {given:g}; it must be {allowed}")
         if abs(theta) == block.alpha and rate == 0.0 == strongest(motion):
-            raise BadInputError(
-                f"--tilt is {self.tilt:g} and nothing moves; it must not be where a block at rest "
-                "balances"
-            )
+            words = "it must not be where a block at rest balances"
+            raise BadInputError(f"--tilt is {self.tilt:g} and nothing moves; {words}")
         return theta, rate
 
     def _angle(self, value: float, unit: float) -> float:
@@ -190,11 +170,6 @@ class Excitation:
 
 MOST_M = 200.0
 """Size [m] up to which a block may be one; 300 are a narrow cabinet in millimetres."""
-
-LEAST_COLUMNS = 2
-"""Of a frame."""
-
-OF_A_FRAME = ("columns", "load")
 
 Width = Annotated[Positive, Parameter(help="Full width B of the block or of each column [m].")]
 Height = Annotated[Positive, Parameter(help="Full height H of the block or of each column [m].")]
@@ -233,25 +208,16 @@ class Standing:
     load: Positive | None = None
 
     def system(self, width: float, height: float, friction: float | None) -> System:
-        """Return the system that the options mean.
-
-        Parameters
-        ----------
-        width, height : float
-            Full sizes of the block or of each column [m].
-        friction : float or None
-            Coefficient between base and a block that slides; other systems have none.
-        """
+        """Return the system that the options mean; of --friction only what slides knows."""
         if self.scene != "frame":
-            own = {name: getattr(self, name) for name in OF_A_FRAME}
-            refuse_given(own, "only with --scene frame")
+            refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
         block = block_of(width, height)
         sizes = {"width": width, "height": height}
         with as_bad_input():
             if self.scene == "frame":
                 words = "a frame requires the mass of its beam, over that of all columns"
                 (load,) = required(words, load=self.load)
-                return RockingFrame(**sizes, columns=self.columns or LEAST_COLUMNS, load=load)
+                return RockingFrame(**sizes, columns=self.columns or 2, load=load)
             if self.scene == "slide":
                 words = "a block that slides requires one below B/H"
                 (friction,) = required(words, friction=friction)
@@ -261,9 +227,8 @@ class Standing:
     def pose(self, system: System, excitation: Excitation) -> Posed:
         """Return the motion and the start that options mean; what slides starts at rest."""
         if self.scene == "slide":
-            refuse_given(
-                {"tilt": excitation.tilt, "rate": excitation.rate}, "only where something rocks"
-            )
+            start = {"tilt": excitation.tilt, "rate": excitation.rate}
+            refuse_given(start, "only where something rocks")
         return excitation.pose(system)
 
 
@@ -296,37 +261,23 @@ def refuse_endless(
             )
 
 
-SMALL_M, LARGE_M = 0.005, 20.0
-"""Sizes [m] beyond which a block is unusual."""
-STRONG_G = 2.0
-"""Amplitude of a pulse [g] from which it is unusual."""
-STRONG_RECORD_G = 3.0
-"""The same of a record; the strongest ever recorded had some 3 to 4 g."""
-SLOW_RAD_S = 1.0
-"""Frequency of a pulse [rad/s] below which it is unusual: its period is more than 6 s."""
-
-
 def unusual(width: float, height: float, given: Excitation, motion: Motion) -> Iterator[str]:
     """Yield a note for each value that is unusual, with what it would be in another unit."""
     for name, size in (("width", width), ("height", height)):
-        if size > LARGE_M:
+        if size > 20.0:
             less = 1e-3 * size
             yield f"--{name} is {size:g} m, large for a block; --{name} {less:g} for as many mm"
-        if size < SMALL_M:
+        if size < 0.005:
             yield f"--{name} is {size:g} m, small for a block"
-    if given.amplitude is not None and given.amplitude > STRONG_G:
-        less = given.amplitude / GRAVITY
-        yield (
-            f"--amplitude is {given.amplitude:g} g, strong for a pulse; "
-            f"--amplitude {less:.4g} for as many m/s²"
-        )
-    if given.omega is not None and given.omega < SLOW_RAD_S:
+    if given.amplitude is not None and given.amplitude > 2.0:
+        meant = f"--amplitude {given.amplitude / GRAVITY:.4g} for as many m/s²"
+        yield f"--amplitude is {given.amplitude:g} g, strong for a pulse; {meant}"
+    if given.omega is not None and given.omega < 1.0:  # its period is more than 6 s
         more = 2.0 * math.pi * given.omega
         yield f"--omega is {given.omega:g} rad/s, slow for a pulse; {more:.4g} for as many Hz"
     if given.tilt is not None and abs(given.tilt) > 1.0 and not given.degrees:
         yield f"--tilt is {given.tilt:g} α, from where a block falls; --degrees for an angle"
-    if isinstance(motion, Record) and motion.peak > STRONG_RECORD_G * GRAVITY:
-        yield (
-            f"--record has {motion.peak / GRAVITY:.3g} g at most, strong for a record; "
-            "its header, or --units, says in which unit it is"
-        )
+    # the strongest record ever has some 3 to 4 g
+    if isinstance(motion, Record) and motion.peak > 3.0 * GRAVITY:
+        has = f"--record has {motion.peak / GRAVITY:.3g} g at most, strong for a record"
+        yield f"{has}; its header, or --units, says in which unit it is"

@@ -24,21 +24,13 @@ import pandas as pd
 
 from engines import ENGINES
 from studies.cases.refusal import BadInputError
-from studies.kit.identity import (
-    COMPUTING,
-    NOT_INSTALLED,
-    ROOT,
-    Maker,
-    changed,
-    version_of,
-    why,
-)
+from studies.kit.identity import COMPUTING, NOT_INSTALLED, ROOT, Maker, changed, version_of, why
 from studies.kit.jobs import Job, Row
 from studies.kit.say import say
 from studies.kit.tables import (
     PACKED,
     digest,
-    read_table,
+    table_in,
     tables_of,
     with_head,
     write_table,
@@ -47,7 +39,7 @@ from studies.kit.tables import (
 
 ROWS, PROVENANCE = "rows.sqlite", "provenance.json"
 LOST = ("no result within the time limit", "the process ", "every worker ")
-"""How the message of a row begins whose process has ended without an answer."""
+"""How the message of a row begins whose process has ended, which another run may not do."""
 NAMES = ("name", "record")
 """Labels by which a user knows a case."""
 
@@ -57,25 +49,12 @@ class FolderError(BadInputError):
 
     def __init__(self, folder: Path, problem: str, option: str = "--out") -> None:
         super().__init__(f"{option} is {str(folder)!r}; {problem}")
-        self.folder, self.problem = folder, problem
 
 
 class Store:
-    """The rows of a folder, which one run at a time may write to.
+    """The rows of a study in a folder, which one run at a time may write to.
 
-    Parameters
-    ----------
-    folder : Path
-        Made if there is none.
-    study : str
-        Name of the study whose rows it holds; another study's folder is refused.
-    table : str, optional
-        Name of a table that holds the rows as they are: a folder without a store is filled from it.
-
-    Raises
-    ------
-    FolderError
-        If the folder cannot be written, is in use, or holds something else.
+    A folder without a store is filled from the table, if it is named, that holds rows as they are.
     """
 
     def __init__(self, folder: Path, study: str, table: str = "") -> None:
@@ -121,31 +100,24 @@ class Store:
     def kept(self, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> dict[str, Row]:
         """Return the rows that would be made so now, but those that another run may make otherwise.
 
-        Parameters
-        ----------
-        jobs : mapping
-            Key -> job.
-        makers : mapping
-            Source -> what makes its rows now.
-
-        Raises
-        ------
-        FolderError
-            If the folder also holds rows of what is not asked for: no table loses them unseen.
+        Jobs are given by their keys, and by a source what makes its rows now. A folder that also
+        holds rows of what is not asked for is refused: no table loses them unseen.
         """
         if self.filled:
             self._fill(jobs, makers)
         rows = self._rows()
         for key, (_, row) in rows.items():
             if key not in jobs:
-                words = _unasked(
-                    row, [{**job.labels, "source": job.source} for job in jobs.values()]
-                )
+                words = _unasked(row, [labels_of(job) for job in jobs.values()])
                 raise FolderError(self.folder, f"it also holds results of {words}")
         found, stale = _sorted(rows, jobs, makers)
         if stale:
             say(f"{len(found)} of {len(jobs)} rows are kept; computed again: {why(stale)}")
-        return {key: row for key, row in found.items() if not _may_differ(row)}
+        return {
+            key: row
+            for key, row in found.items()
+            if row["outcome"] != "failed" or not str(row.get("message", "")).startswith(LOST)
+        }
 
     def _rows(self) -> dict[str, tuple[Maker, Row]]:
         try:
@@ -156,13 +128,11 @@ class Store:
     def _fill(self, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> None:
         """Take the rows of a folder's table, which its provenance says what made."""
         made = provenance_of(self.folder).get("made", {})
-        places = [self.folder / f"{self.table}.csv{end}" for end in ("", PACKED)]
-        rows = read_table(next(path for path in places if path.is_file())).to_dict("records")
-        keys = {_name_of({**job.labels, "source": job.source}): key for key, job in jobs.items()}
-        labels = [*next(iter(jobs.values())).labels, "source"] if jobs else []
-        for line in rows:
+        keys = {json.dumps(labels_of(job), default=_number): key for key, job in jobs.items()}
+        labels = [*labels_of(next(iter(jobs.values())))] if jobs else []
+        for line in table_in(self.folder, self.table).to_dict("records"):
             row = {str(name): value for name, value in line.items()}
-            name = _name_of({label: row.get(label) for label in labels})
+            name = json.dumps({label: row.get(label) for label in labels}, default=_number)
             if name not in keys:
                 raise FolderError(self.folder, f"it also holds results of {_said(row, labels)}")
             if row["source"] in made:
@@ -170,13 +140,7 @@ class Store:
         self._added, self.filled = 0, False
 
     def add(self, key: str, row: Row, maker: Maker) -> None:
-        """Store a row, at once and in one piece.
-
-        Raises
-        ------
-        FolderError
-            If it cannot be written.
-        """
+        """Store a row, at once and in one piece."""
         made = json.dumps(maker, sort_keys=True)
         try:
             if made not in self._makers:
@@ -191,12 +155,8 @@ class Store:
     def take(self, other: Path, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> None:
         """Copy from another folder the rows of some jobs that would be made so here.
 
-        A failure is taken only where its engine is not installed; else it is tried again.
-
-        Raises
-        ------
-        FolderError
-            If it is no results folder, or holds no row of these jobs that would be made so here.
+        A failure is taken only where its engine is not installed; else it is tried again. A folder
+        without such rows is refused.
         """
         if not (other / ROWS).is_file():
             words = f"it must be a results folder, with its {ROWS} and {PROVENANCE}"
@@ -208,27 +168,24 @@ class Store:
         except (sqlite3.Error, ValueError, KeyError) as error:
             raise FolderError(other, f"its {ROWS} cannot be read ({error})", "--also") from error
         found, stale = _sorted(rows, jobs, makers)
-        mine = self._rows()
-        taken = {
-            key: row
-            for key, row in found.items()
-            if (key not in mine or changed(mine[key][0], makers[row["source"]]))
-            and (row["outcome"] != "failed" or not _installed(jobs[key]))
-        }
         if not found:
             words = f"all its rows are stale ({why(stale)})"
-            raise FolderError(
-                other, words if stale else "it holds no row of what is asked for", "--also"
-            )
-        before = self._added
-        for key, row in taken.items():
-            self.add(key, row, rows[key][0])
+            none = "it holds no row of what is asked for"
+            raise FolderError(other, words if stale else none, "--also")
+        mine, before, taken = self._rows(), self._added, list[str]()
+        for key, row in found.items():
+            known = key in mine and not changed(mine[key][0], makers[row["source"]])
+            asked = jobs[key].asked
+            able = not asked.engine or asked.declared.installed
+            if not known and (row["outcome"] != "failed" or not able):
+                taken.append(key)
+                self.add(key, row, rows[key][0])
         self._added = before
         if stale:
             say(f"not taken from {str(other)!r}: {why(stale)}")
         record = provenance_of(other)
-        engines = [jobs[key] for key in taken if jobs[key].asked.engine]
-        names = {name for job in engines for name in job.asked.declared.packages}
+        engines = [jobs[key].asked for key in taken if jobs[key].asked.engine]
+        names = {name for asked in engines for name in asked.declared.packages}
         made = {name: rows[key][0].get(name) for key in taken for name in names & {*rows[key][0]}}
         said = {name: record.get(name) for name in ("git", "machine")}
         self._taken.append({**said, "engines": made, "rows": len(taken)})
@@ -241,18 +198,9 @@ class Store:
         /,
         **asked: Any,
     ) -> None:
-        """Write tables, and what a reader must know of how they were made.
+        """Write tables by their names, and what a reader must know of how they were made.
 
-        Parameters
-        ----------
-        tables : mapping
-            Name of a file, without .csv -> table.
-        makers : mapping
-            Source -> what made its rows.
-        rows : int
-            How many rows there are.
-        **asked
-            Options of the command.
+        That is what made the rows of each source, how many there are, and what was asked.
         """
         for name, table in tables.items():
             write_table(self.folder / f"{name}.csv", with_head(table, self.study, name))
@@ -266,10 +214,8 @@ class Store:
             **({"also": self._taken} if self._taken else {}),
         }
         record = {"study": self.study, **versions(before), "git": commit(), "machine": machine()}
-        write_record(
-            self.folder,
-            {**record, "made": makers, "runs": [*before.get("runs", ()), run]},
-        )
+        runs = [*before.get("runs", ()), run]
+        write_record(self.folder, {**record, "made": makers, "runs": runs})
 
 
 def _read(base: sqlite3.Connection) -> dict[str, tuple[Maker, Row]]:
@@ -282,13 +228,13 @@ def _may_be_filled(folder: Path, study: str, table: str) -> bool:
     """Return whether a folder without a store is empty, or holds a table to fill one from."""
     if not any(each for each in folder.iterdir() if not each.name.startswith(".")):
         return True
-    if not table or not any((folder / f"{table}.csv{end}").is_file() for end in ("", PACKED)):
-        return False
-    return provenance_of(folder).get("study") == study
+    known = any((folder / f"{table}.csv{end}").is_file() for end in ("", PACKED))
+    return bool(table) and known and provenance_of(folder).get("study") == study
 
 
-def _name_of(labels: Mapping[str, Any]) -> str:
-    return json.dumps(labels, default=_number)
+def labels_of(job: Job) -> Row:
+    """Return the columns that name a job's row."""
+    return {**job.labels, "source": job.source}
 
 
 def _number(value: Any) -> Any:
@@ -330,15 +276,6 @@ def _sorted(
             else:
                 found[key] = row
     return found, stale
-
-
-def _may_differ(row: Row) -> bool:
-    """Return whether a row failed by its process or its time, which may do so no more."""
-    return row["outcome"] == "failed" and str(row.get("message", "")).startswith(LOST)
-
-
-def _installed(job: Job) -> bool:
-    return not job.asked.engine or job.asked.declared.installed
 
 
 @cache
@@ -408,10 +345,8 @@ def usable_cores() -> int:
 def provenance_of(folder: Path) -> dict[str, Any]:
     """Return what a folder's provenance says; nothing where there is none."""
     path = folder / PROVENANCE
-    if not path.is_file():
-        return {}
     with suppress(ValueError, RecursionError):
-        record = json.loads(path.read_text(encoding="utf-8"))
+        record = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
         if isinstance(record, dict):
             return record
     raise FolderError(folder, f"its {PROVENANCE} cannot be read")
@@ -438,20 +373,9 @@ def whole_runs(record: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def check(folder: Path, names: Iterable[str], option: str) -> None:
-    """Refuse tables that are not what a study wrote; those that are not there are passed over.
+    """Refuse tables of a folder that are not what a study wrote; a missing one is passed over.
 
-    Parameters
-    ----------
-    folder : Path
-    names : iterable of str
-        Tables, each perhaps in a folder inside, beside its provenance.
-    option : str
-        Name of the option that names the folder.
-
-    Raises
-    ------
-    FolderError
-        If a table was edited or cut, or no provenance tells of it.
+    Each may lie in a folder inside, beside its provenance; `option` is what names the folder.
     """
     for name in names:
         for path in (folder / name, folder / f"{name}{PACKED}"):

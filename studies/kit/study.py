@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, make_dataclass
+from dataclasses import asdict, dataclass, field, make_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_type_hints
 
@@ -34,13 +34,10 @@ def _nothing(tables: Tables) -> Mapping[str, Any]:
 def _with_defaults(running: Running) -> type[Running]:
     """Return Running with a study's defaults, which hold where another of its options is given."""
     hints = get_type_hints(Running, include_extras=True)
-    own = [(each.name, getattr(running, each.name), each.default) for each in fields(Running)]
-    changed = [(name, hints[name], value) for name, value, default in own if value != default]
-    if not changed:
-        return Running
+    own = [(each, hints[each], getattr(running, each)) for each in asdict(running)]
     place = {"__module__": __name__}
     made = make_dataclass(
-        "Running", changed, bases=(Running,), namespace=place, frozen=True, kw_only=True
+        "Running", own, bases=(Running,), namespace=place, frozen=True, kw_only=True
     )
     return Parameter(name="*")(made)
 
@@ -49,61 +46,26 @@ def _with_defaults(running: Running) -> type[Running]:
 class Study:
     """A study: its finding and its figures are made of its tables alone.
 
-    Attributes
-    ----------
-    name : str
-        Its command, and the folder of a report that holds its results.
-    question : str
-        What it answers.
-    help : str
-        What its command's help says: what it does, and how long that takes.
-    sources : tuple of str
-        Whom it asks by default; without any, it has no option --sources.
-    options : type, optional
-        A dataclass of further options.
-    quick : str
-        What --quick leaves out; without it, there is no such option.
-    jobs : callable
-        ``(sources, quick[, options]) -> list of Job``, in the order of the rows.
-    measure : callable
-        A job -> the columns that follow its labels and source, outcome among them. It runs in a
-        process that may end without an answer; `studies.kit.jobs.ask` then returns a failure.
-    tabulate : callable
-        Rows -> tables.
-    finding : callable
-        Tables -> one sentence, what they show.
-    shown : callable, optional
-        Tables -> the short tables that stand beside the finding, by their titles.
-    figures : callable, optional
-        Tables -> figures, by the names of their files, without .png.
-    captions : mapping
-        Beginning of the name of a figure -> what is seen in it.
-    needed : callable, optional
-        Rows -> those whose failure is the study's; by default all.
-    texts : tuple of str
-        Columns that are words though they may look like numbers.
-    rows : str
-        Name of a table that holds the rows as they are: a folder without a store goes on from it.
-    running : Running
-        Where its jobs run by default, and for how long.
+    A measure runs in a process that may end without an answer; `studies.kit.jobs.ask` then returns
+    a failure.
     """
 
-    name: str
+    name: str  # of its command, and of the folder of a report that holds its results
     question: str
-    help: str
-    sources: tuple[str, ...] = ()
-    options: type | None = None
-    quick: str = ""
-    jobs: Callable[..., Sequence[Job]]
-    measure: Callable[[Job], Row] = answer
-    tabulate: Callable[[pd.DataFrame], Tables]
-    finding: Callable[[Tables], str]
-    shown: Callable[[Tables], Mapping[str, pd.DataFrame]] = _nothing
-    figures: Callable[[Tables], Mapping[str, Figure]] = _nothing
-    captions: Mapping[str, str] = field(default_factory=dict)
-    needed: Callable[[Sequence[Row]], Sequence[Row]] = tuple
-    texts: tuple[str, ...] = ()
-    rows: str = ""
+    help: str  # of its command: what it does, and how long that takes
+    sources: tuple[str, ...] = ()  # asked by default; without any, there is no --sources
+    options: type | None = None  # a dataclass of further options
+    quick: str = ""  # what --quick leaves out; without it, there is no such option
+    jobs: Callable[..., Sequence[Job]]  # (sources, quick[, options]), in the order of the rows
+    measure: Callable[[Job], Row] = answer  # columns after labels and source, outcome among them
+    tabulate: Callable[[pd.DataFrame], Tables]  # of its rows
+    finding: Callable[[Tables], str]  # what its tables show, in a sentence
+    shown: Callable[[Tables], Tables] = _nothing  # short tables beside the finding, by their titles
+    figures: Callable[[Tables], Mapping[str, Figure]] = _nothing  # by the names of their files
+    captions: Mapping[str, str] = field(default_factory=dict)  # by the beginning of a figure's name
+    needed: Callable[[Sequence[Row]], Sequence[Row]] = tuple  # rows whose failure is the study's
+    texts: tuple[str, ...] = ()  # columns of words that may look like numbers
+    rows: str = ""  # a table of the rows as they are: a folder without a store goes on from it
     running: Running = Running()  # noqa: RUF009
 
     def command(self) -> Callable[..., int]:
@@ -126,35 +88,21 @@ class Study:
             return self.carry_out(out, jobs, running, **given, **asked)
 
         command.__doc__ = f"{self.question}\n\n{self.help}"
-        command.__annotations__ = {name: hint for name, (hint, _) in taken.items()} | {
-            "return": int
-        }
+        command.__annotations__ = {name: hint for name, (hint, _) in taken.items()}
         command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
             [
                 inspect.Parameter(
-                    name, inspect.Parameter.KEYWORD_ONLY, default=value, annotation=of
+                    name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint
                 )
-                for name, (of, value) in taken.items()
-            ],
-            return_annotation=int,
+                for name, (hint, default) in taken.items()
+            ]
         )
         return command
 
     def carry_out(self, out: Path, jobs: Sequence[Job], running: Running, **asked: Any) -> int:
         """Run into a folder what it does not hold yet; write and print what that shows.
 
-        Parameters
-        ----------
-        out : Path
-        jobs : sequence of Job
-        running : Running
-        **asked
-            Options of the command, for the provenance.
-
-        Returns
-        -------
-        int
-            0 if all rows that are needed are usable, 1 if some failed.
+        The provenance says what was asked. Returned is 1 if some rows failed that are needed, or 0.
         """
         with Store(out, self.name, self.rows) as store:
             rows = run(jobs, self.measure, place_of(running), store, running.also or ())

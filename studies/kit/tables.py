@@ -13,8 +13,6 @@ from pathlib import Path
 import pandas as pd
 
 PACKED = ".gz"
-COLUMNS = Path(__file__).parents[1] / "published" / "columns.csv"
-"""The columns of every published table."""
 FORMULA = re.compile(r"'*[=+\-@].+")
 """Words in one line that a spreadsheet takes for a formula, or that were quoted once."""
 
@@ -75,7 +73,8 @@ def with_head(table: pd.DataFrame, study: str, name: str) -> pd.DataFrame:
     """Return a table of a study; one that has no columns with those of the published one."""
     if len(table.columns):
         return table
-    known = pd.read_csv(COLUMNS, keep_default_na=False)
+    columns = Path(__file__).parents[1] / "published" / "columns.csv"
+    known = pd.read_csv(columns, keep_default_na=False)
     mine = known["table"].isin([f"{study}/{name}.csv{end}" for end in ("", PACKED)])
     return pd.DataFrame(columns=known.loc[mine, "column"].drop_duplicates())
 
@@ -83,12 +82,7 @@ def with_head(table: pd.DataFrame, study: str, name: str) -> pd.DataFrame:
 def read_table(path: Path, *words: str) -> pd.DataFrame:
     """Read a table back as it was written: empty words are such, and numbers may be missing.
 
-    Parameters
-    ----------
-    path : Path
-        A blank file is a table without columns.
-    *words : str
-        Columns of words that may look like numbers, or like none, besides message.
+    Named are the columns of words that may look like numbers, or like none, besides message.
     """
     texts = dict.fromkeys(("message", *words), str)
     try:

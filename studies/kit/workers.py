@@ -44,20 +44,8 @@ def answers(
 ) -> Iterator[tuple[int, Any]]:
     """Yield the number of each task with what ``call(*task)`` returns, or a `Lost`, as they end.
 
-    Parameters
-    ----------
-    call : callable
-        A function of a module.
-    tasks : sequence of tuple
-    workers : int
-        Processes side by side.
-    limit_s : float
-        Time that each task may take [s], without what its process must load before.
-
-    Raises
-    ------
-    OSError
-        If a process cannot be started.
+    It is a function of a module. So many workers are processes side by side; a task may take so
+    long [s], without what its process must load before.
     """
     waiting, idle, busy = deque(enumerate(tasks)), list[_Worker](), list[_Worker]()
     try:
