@@ -69,7 +69,7 @@ def command(
     if results is None:
         width, height = required("give them, or --results", width=width, height=height)
         system = standing.system(width, height, yours.friction)
-        motion, start = standing.pose(system, excitation)
+        motion, start = excitation.pose(system)
     else:
         scene = asdict(standing) | {"scene": None if standing.scene == "block" else standing.scene}
         given = {"width": width, "height": height, **scene, **asdict(excitation)}

@@ -69,7 +69,7 @@ def command(
     refuse_both(dt=yours.dt, step=step)
     asked, used = _resolve(engine, preset)
     system = standing.system(width, height, yours.friction)
-    motion, start = standing.pose(system, excitation)
+    motion, start = excitation.pose(system)
     if out.exists() and any(out.iterdir()):
         raise BadInputError(f"--out is {str(out)!r}; it must be a new or an empty folder")
     window = free_rocking_window(system, motion)

@@ -82,7 +82,7 @@ def command(
     width, height = required(words, width=width, height=height)
     check_plot(plot)
     system = standing.system(width, height, yours.friction)
-    motion, start = standing.pose(system, excitation)
+    motion, start = excitation.pose(system)
     window = window_of(system, motion, duration)
     refuse_endless(system, window, duration=duration, step=effort.step, dt=yours.dt)
     times = np.linspace(0.0, window, SAMPLES) if plot else None

@@ -25,7 +25,7 @@ from studies.kit.identity import Maker, maker_of
 from studies.kit.jobs import Job, Row, ask, unanswered
 from studies.kit.say import say
 from studies.kit.store import Store, labels_of
-from studies.kit.workers import MEMORY_BYTES, Lost, answers
+from studies.kit.workers import MEMORY_BYTES, Lost, answers, deferring
 
 FEW = 32
 """Jobs up to which to interpret takes less time than to load what is compiled."""
@@ -67,7 +67,7 @@ def local(
         if many and job.source not in loaded:
             loaded.add(job.source)
             ask(job)  # to load what is compiled is no part of the first case's run time
-        with undisturbed():
+        with deferring(*ENDING):  # one that comes while compiled code is called makes it crash
             row = measure(job)
         yield number, row
     if not apart:
@@ -81,16 +81,6 @@ def local(
             reason = Reason.UNDECIDED if row.late else Reason.ERROR
             row = lost_row(measure, jobs[number], Response.failure(row.why, reason=reason))
         yield number, row
-
-
-@contextmanager
-def undisturbed() -> Iterator[None]:
-    """Let signals wait: one that comes while compiled code is called makes it crash."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 _loaded = set[str]()

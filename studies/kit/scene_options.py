@@ -101,7 +101,9 @@ class Excitation:
     degrees: bool = False
 
     def pose(self, block: System) -> Posed:
-        """Return the motion and the start that the options mean for a block."""
+        """Return the motion and the start that the options mean; what slides starts at rest."""
+        if isinstance(block, SlidingBlock):
+            refuse_given(self._given("tilt", "rate"), "only where something rocks")
         motion = self._motion()
         return motion, self._start(block, motion)
 
@@ -223,13 +225,6 @@ class Standing:
                 (friction,) = required(words, friction=friction)
                 return SlidingBlock(**sizes, friction=friction)
         return block
-
-    def pose(self, system: System, excitation: Excitation) -> Posed:
-        """Return the motion and the start that options mean; what slides starts at rest."""
-        if self.scene == "slide":
-            start = {"tilt": excitation.tilt, "rate": excitation.rate}
-            refuse_given(start, "only where something rocks")
-        return excitation.pose(system)
 
 
 def refuse_endless(

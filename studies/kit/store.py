@@ -61,7 +61,6 @@ class Store:
         self.folder, self.study, self.table = folder, study, table
         self._began, self._added = time.perf_counter(), 0
         self._taken: list[Row] = []
-        self._makers: set[str] = set()
         fresh = not (folder / ROWS).exists()
         if fresh and folder.is_dir() and not _may_be_filled(folder, study, table):
             raise FolderError(folder, f"it must be new or empty, or hold the {ROWS} of this study")
@@ -72,7 +71,6 @@ class Store:
             for line in ("locking_mode=EXCLUSIVE", "journal_mode=WAL", "synchronous=NORMAL"):
                 self._base.execute(f"PRAGMA {line}")
             self._base.execute("CREATE TABLE IF NOT EXISTS rows (key PRIMARY KEY, made, row)")
-            self._base.execute("CREATE TABLE IF NOT EXISTS makers (made PRIMARY KEY, maker)")
             self._base.execute("CREATE TABLE IF NOT EXISTS study (name PRIMARY KEY)")
             self._base.execute("BEGIN IMMEDIATE")
             known = [name for (name,) in self._base.execute("SELECT name FROM study")] or [study]
@@ -143,9 +141,6 @@ class Store:
         """Store a row, at once and in one piece."""
         made = json.dumps(maker, sort_keys=True)
         try:
-            if made not in self._makers:
-                self._makers.add(made)
-                self._base.execute("INSERT OR IGNORE INTO makers VALUES (?, ?)", (made, made))
             text = json.dumps(row, default=_number)
             self._base.execute("REPLACE INTO rows VALUES (?, ?, ?)", (key, made, text))
         except sqlite3.Error as error:
@@ -219,8 +214,8 @@ class Store:
 
 
 def _read(base: sqlite3.Connection) -> dict[str, tuple[Maker, Row]]:
-    then = {name: json.loads(of) for name, of in base.execute("SELECT made, maker FROM makers")}
-    rows = base.execute("SELECT key, made, row FROM rows")
+    rows = base.execute("SELECT key, made, row FROM rows").fetchall()
+    then = {made: json.loads(made) for made in {made for _, made, _ in rows}}
     return {key: (then[made], json.loads(text)) for key, made, text in rows}
 
 
@@ -313,14 +308,19 @@ def commit() -> dict[str, Any] | None:
     """Return the commit of the source and whether it was edited since; None without git."""
     if not (ROOT / ".git").exists():
         return None
+    words = [
+        "git",
+        "-C",
+        str(ROOT),
+        "describe",
+        "--always",
+        "--abbrev=40",
+        "--exclude=*",
+        "--dirty",
+    ]
     with suppress(OSError, subprocess.SubprocessError):
-        hash_, edited = (
-            subprocess.run(
-                ["git", "-C", str(ROOT), *words.split()],
-                capture_output=True, text=True, timeout=10, check=True,
-            ).stdout.strip()
-            for words in ("rev-parse HEAD", "status --porcelain -uno")
-        )  # fmt: skip
+        done = subprocess.run(words, capture_output=True, text=True, timeout=10, check=True)
+        hash_, _, edited = done.stdout.strip().partition("-")
         return {"commit": hash_, "edited": bool(edited)}
     return None
 
@@ -337,9 +337,8 @@ def machine() -> dict[str, Any]:
 
 def usable_cores() -> int:
     """Return the number of cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+    here = hasattr(os, "sched_getaffinity")
+    return len(os.sched_getaffinity(0)) if here else os.cpu_count() or 1
 
 
 def provenance_of(folder: Path) -> dict[str, Any]:

@@ -14,7 +14,7 @@ import sys
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
@@ -27,8 +27,6 @@ MEMORY_BYTES = 4_000_000_000
 """What a process may allocate [byte]; only Linux keeps it to that."""
 LOADING_S = 300.0
 """How long a process may take to start and to load what a task needs [s]."""
-TERMINAL = (signal.SIGINT, signal.SIGHUP)
-"""Signals that a terminal sends to every process in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +65,16 @@ def answers(
             worker.end()
 
 
+@contextmanager
+def deferring(*signals: int) -> Iterator[None]:
+    """Let signals wait."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 class _Worker:
     """A process, seen from the one that gives it tasks."""
 
@@ -74,11 +82,8 @@ class _Worker:
         context = get_context("spawn")  # engines hold state of their own, which no fork may share
         self.channel, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs,))
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, TERMINAL)
-        try:
+        with deferring(signal.SIGINT, signal.SIGHUP):  # what a terminal sends to all in it
             self.process.start()
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
         theirs.close()
         self.number, self.until = -1, 0.0
 
