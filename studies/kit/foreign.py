@@ -30,17 +30,11 @@ PACKAGES = ("analytic", "engines", "studies")
 @contextmanager
 def kept_out() -> Iterator[None]:
     """Load no code of other packages in this process: each engine is declared by another one."""
-    registry.elsewhere = declared
+    registry.elsewhere = lambda name: apart(_declared_here, name)
     try:
         yield
     finally:
         registry.elsewhere = None
-
-
-def declared(name: str) -> Engine:
-    """Return an engine as a process of its own declares it; UnloadableError if it cannot."""
-    engine: Engine = apart(_declared_here, name)
-    return engine
 
 
 def apart(call: Callable[..., Any], engine: str, *given: Any) -> Any:
@@ -66,14 +60,11 @@ def _tried(call: Callable[..., Any], *given: Any) -> tuple[Any, str]:
 
 @dataclass(frozen=True)
 class Call:
-    """What an engine declares by some name and can be called, in a process of its own.
-
-    Its code stands in `files`.
-    """
+    """What an engine declares by some name and can be called, in a process of its own."""
 
     engine: str
     name: str
-    files: tuple[Path, ...]
+    files: tuple[Path, ...]  # in which its code stands
 
     def __call__(self, *given: Any) -> Any:
         """Call it; UnloadableError as of `apart`."""

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -39,8 +39,6 @@ MOST_TIME, MOST_STEPS = 1e6, 1e9
 solver minutes and an engine hours."""
 
 Pulse = Literal["half-sine", "full-sine"]
-Posed: TypeAlias = tuple[Motion, tuple[float, float]]
-"""A motion of the base, and theta [rad] and its rate [rad/s] at t = 0."""
 
 
 @Parameter(name="*")
@@ -100,8 +98,8 @@ class Excitation:
     rate: Finite | None = None
     degrees: bool = False
 
-    def pose(self, block: System) -> Posed:
-        """Return the motion and the start that the options mean; what slides starts at rest."""
+    def pose(self, block: System) -> tuple[Motion, tuple[float, float]]:
+        """Return the motion that the options mean, and θ [rad] and its rate [rad/s] at t = 0."""
         if isinstance(block, SlidingBlock):
             refuse_given(self._given("tilt", "rate"), "only where something rocks")
         motion = self._motion()
