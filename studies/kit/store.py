@@ -120,7 +120,7 @@ class Store:
     def _rows(self) -> dict[str, tuple[Maker, Row]]:
         try:
             return _read(self._base)
-        except (sqlite3.Error, ValueError, KeyError) as error:
+        except (sqlite3.Error, ValueError, TypeError) as error:
             raise FolderError(self.folder, f"its {ROWS} is damaged ({error})") from error
 
     def _fill(self, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> None:
@@ -160,7 +160,7 @@ class Store:
             base = sqlite3.connect(f"file:{other / ROWS}?mode=ro", uri=True, timeout=0.2)
             rows = _read(base)
             base.close()
-        except (sqlite3.Error, ValueError, KeyError) as error:
+        except (sqlite3.Error, ValueError, TypeError) as error:
             raise FolderError(other, f"its {ROWS} cannot be read ({error})", "--also") from error
         found, stale = _sorted(rows, jobs, makers)
         if not found:
