@@ -422,7 +422,8 @@ about frames alone. What an engine is not built for is a row that says so. Twelv
         "dashed; it stays flat, and only friction holds it.",
         "frame-time": "For each engine and preset a line from the median to the largest error of a "
         "frame's peak, at the run time of a case; beside the name the number of wrong outcomes.",
-        "slide-time": "The same of the slips of sliding blocks.",
+        "slide-time": "For each engine and preset the median and the largest error of a slip, at "
+        "the run time of a case.",
         "floor": "How far a floor carries a block of what it should, for each engine and each way "
         "of moving the floor, when it moves at once and when it moves after a second of rest.",
     },

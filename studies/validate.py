@@ -42,6 +42,7 @@ from studies.measures.halving import (
     factors,
     halved,
 )
+from studies.measures.presets import titled
 from studies.measures.published import PUBLISHED, SETTING, TARGETS
 from studies.measures.wrongness import counted, wrong_in
 from studies.sources.registry import core_sources
@@ -302,9 +303,9 @@ def finding(tables: Tables) -> str:
     (best, wrong, peaks, cases), (worst, missed, off, _) = order.iloc[[0, -1]].to_numpy()
     within = "" if math.isnan(peaks) else f", and well-conditioned peaks within {part(peaks)}"
     loses = f"{missed} outcome{'s' if missed > 1 else ''}" if missed else f"peaks by {part(off)}"
-    other = f"; {worst} misses {loses}" if len(order) > 1 else ""
+    other = f"; {titled(worst)} misses {loses}" if len(order) > 1 else ""
     right = out_of(cases - wrong, cases)
-    return f"{best} predicts the outcome of {right} random cases{within}{other}."
+    return f"{titled(best)} predicts the outcome of {right} random cases{within}{other}."
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:

@@ -6,6 +6,7 @@ from typing import Literal
 
 from engines import ENGINES
 from engines.declaration import AT_REST, RECOMMENDED, Preset
+from studies.kit.say import capital
 from studies.sources.registry import resolve
 
 Fill = Literal["none", "left", "bottom", "full"]
@@ -72,3 +73,10 @@ def in_order(names: Iterable[str]) -> list[str]:
     *first, last = PRESETS
     places = {**{name: place for place, name in enumerate(first)}, last: len(PRESETS)}
     return sorted(set(names), key=lambda name: (places.get(name, len(first)), name))
+
+
+def titled(source: str) -> str:
+    """Return a source as the subject of a sentence: "MuJoCo (landing steps)", "Housner"."""
+    if not (preset := preset_of(source)):
+        return capital(source)
+    return f"{ENGINES[engine_of(source)].title} ({look_of(preset).short})"

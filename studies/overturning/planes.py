@@ -15,6 +15,7 @@ from analytic.motion import Delayed
 from studies.cases.paper import PULSES
 from studies.kit.jobs import Job, Question
 from studies.kit.say import part
+from studies.measures.presets import titled
 from studies.measures.wrongness import FALL, KINDS, kinds_of
 from studies.sources.registry import resolve
 
@@ -124,5 +125,5 @@ def finding(parts: pd.DataFrame) -> str:
     shares = (sums["close"] / sums["cases"]).sort_values()
     if shares.empty:
         return "The exact solution stands alone: --sources names no engine."
-    ends = [f"{name} predicts {part(shares[name])}" for name in shares.index[[0, -1]]]
+    ends = [f"{titled(name)} predicts {part(shares[name])}" for name in shares.index[[0, -1]]]
     return f"{' and '.join(dict.fromkeys(ends))} of the pulses, with peaks within {part(CLOSE)}."

@@ -91,7 +91,7 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
     ),
     "The paper's histories and linearizations": (
         Part(folder="histories", name="histories", quick=()),
-        Part(folder="linearizations", name="linearizations"),
+        Part(folder="linearizations", name="linearizations", quick=()),
     ),
     "Random cases": (
         Part(folder="validate", name="validate"),

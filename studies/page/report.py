@@ -53,7 +53,7 @@ def _prepare(out: Path, full: bool) -> None:
     path, kind = out / "kind.txt", "full" if full else "quick"
     try:
         out.mkdir(parents=True, exist_ok=True)
-        strange = sorted(each.name for each in out.iterdir() if not each.name.startswith("."))
+        strange = sorted(each.name for each in out.iterdir() if each.name != f".part.{path.name}")
         if strange and not path.is_file():
             problem = f"it must be new or empty, or hold a report, and it holds {strange[0]!r}"
             raise FolderError(out, problem)

@@ -65,7 +65,7 @@ def test_closed_streams_change_no_exit_code_and_no_result(numbers, tmp_path):
         asked = ["validate", "--sources", "exact", "mujoco:fixed", "--cases", "5"]
         done = python("-m", "studies", *asked, "--out", tmp_path / "out", before=before)
         assert done.returncode == 0
-        assert len((tmp_path / "out" / "validate.csv").read_text().splitlines()) == 11
+        assert len((tmp_path / "out" / "errors.csv").read_text().splitlines()) == 11
 
 
 def test_output_that_cannot_be_written_is_one_line():

@@ -1,7 +1,5 @@
 """The paper's sweep: its rows, its summary and its conclusions."""
 
-import re
-
 import pandas as pd
 import pytest
 
@@ -54,4 +52,4 @@ def test_the_finding_of_presets_names_the_worst_engine_of_the_best():
         }
     )  # fmt: skip
     words = sweep.finding({"summary": lines})
-    assert re.findall(r"\d+", words) == ["2", "10", "9", "3"]
+    assert "2 of 10" in words and "step, 9, " in words
