@@ -18,7 +18,6 @@ from analytic.motion import Motion
 from analytic.response import Outcome, Reason, Response
 from analytic.simulate import simulate
 from engines import Scene
-from engines.declaration import Stepping
 from engines.parts.factors import DEFAULT
 from engines.run.drive import LAG, Stepper, build
 from engines.run.monitor import Monitor
@@ -35,21 +34,15 @@ if TYPE_CHECKING:
 FRAME, BLOCK = RockingFrame(width=0.5, height=1.5, load=2.0), RigidBlock(width=0.5, height=1.5)
 PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
 """Amplitude [g] and circular frequency [rad/s] of full sines."""
-LOADS, COLUMNS = (0.5, 2.0, 4.0), (2, 3)
-EXTREMES = ((2, 1e-3), (2, 0.1), (2, 10.0), (2, 1e3), (5, 2.0))
-"""Columns and load of frames that are shown by themselves, under the first pulse."""
-PHASES = 4
-"""Where in a step an impact falls costs per mille: so many runs at steps that differ by a hair."""
-REFINED = (4.0, 2.0, 0.5)
-"""Steps over an engine's own, for the frame of two columns with a load of 2 under a pulse."""
-FRICTIONS = (0.1, 0.2, 0.3)
 RIDE = SinePulse(amplitude=1.0, omega=2.0 * math.pi, half_cycles=4)
 """Of a floor, which a block with a friction of 1 rides over 0.32 m."""
-RESTS_S, HELD_S = (0.0, 1.0), 2.0
-"""How long all rests before a floor moves; how long a base is accelerated below the onset [s]."""
 
 SHARED = ("outcome", "peak_ratio", "impacts", "steps", "wall_s", "message", "reason")
-SEEN = {"frame": ("parting", "tilt", "drift_m"), "slide": ("place_m", "lift_m", "turn_rad")}
+SEEN = {
+    "frame": ("parting", "tilt", "drift_m"),
+    "slide": ("place_m", "lift_m", "turn_rad"),
+    **dict.fromkeys(("floor", "block"), (LAG,)),
+}
 """What an engine shows of a scene besides."""
 LABELS = {
     "frame": ("columns", "load", "amplitude_g", "omega", "refined", "extreme", "phase"),
@@ -58,49 +51,50 @@ LABELS = {
     "block": ("amplitude_g", "omega", "half_cycles"),
 }
 MEASURED = {
-    "frame": ("exact", "right", "error", *SEEN["frame"]),
-    "slide": ("slips", "exact_slips", "slip_error_m", *SEEN["slide"]),
-    "floor": ("carried", LAG),
-    "block": ("exact", "own_exact", "error", "own_error", LAG),
+    "frame": ("exact", "right", "error"),
+    "slide": ("slips", "exact_slips", "slip_error_m"),
+    "floor": ("carried",),
+    "block": ("exact", "own_exact", "error", "own_error"),
 }
 """Scene -> the columns of its table before source, and after what all have."""
-WHOLE = ("columns", "phase", "slips", "exact_slips", "half_cycles")
-TYPES = {**dict.fromkeys(WHOLE, int), "extreme": bool, "right": bool}
+TYPES = {
+    **dict.fromkeys(("columns", "phase", "slips", "exact_slips", "half_cycles"), int),
+    **dict.fromkeys(("extreme", "right"), bool),
+}
 """Of columns that hold no other numbers or words."""
 
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return the job of every case and source: of frames first."""
-    asked = [(name, resolve(name)) for name in sources]
+    asked = [resolve(name) for name in sources]
     beyond = [*_slides(asked, quick), *_floors(asked), *_blocks(asked, quick)]
     return [*_frames(asked, quick), *beyond]
 
 
-Asked = Sequence[tuple[str, Source]]
+def _job(scene: str, labels: Row, case: Question, source: Source, **options: Any) -> Job:
+    return Job(labels={"scene": scene, **labels}, case=case, source=source.name, options=options)
 
 
-def _job(scene: str, labels: Row, question: Question, source: str, **options: Any) -> Job:
-    return Job(labels={"scene": scene, **labels}, case=question, source=source, options=options)
-
-
-def _frames(sources: Asked, quick: bool) -> Iterator[Job]:
+def _frames(sources: Sequence[Source], quick: bool) -> Iterator[Job]:
     """Yield the usual frames, the extreme ones, and one in other steps than an engine's own."""
-    usual = [(2, 2.0)] if quick else [(columns, load) for load, columns in product(LOADS, COLUMNS)]
-    posed = [(*frame, *pulse, 1.0, False)
-             for frame, pulse in product(usual, PULSES[: 1 if quick else None])]  # fmt: skip
+    posed = [(2, 2.0, *PULSES[0], 1.0, False)]
     if not quick:
-        posed += [(*frame, *PULSES[0], 1.0, True) for frame in EXTREMES]
-        posed += [(2, 2.0, *PULSES[0], refined, False) for refined in REFINED]
+        frames = product((0.5, 2.0, 4.0), (2, 3), PULSES)
+        posed = [(columns, load, *pulse, 1.0, False) for load, columns, pulse in frames]
+        extremes = ((2, 1e-3), (2, 0.1), (2, 10.0), (2, 1e3), (5, 2.0))
+        posed += [(*frame, *PULSES[0], 1.0, True) for frame in extremes]
+        posed += [(2, 2.0, *PULSES[0], refined, False) for refined in (4.0, 2.0, 0.5)]
     for columns, load, amplitude_g, omega, refined, extreme in posed:
         case = Question(
             system=RockingFrame(width=0.5, height=1.5, columns=columns, load=load),
             motion=SinePulse.in_g(amplitude_g, omega=omega, half_cycles=2),
         )
-        for name, source in sources:
-            for phase, options in _steps(source, case, 2 if quick else PHASES, refined):
+        for source in sources:
+            # where in a step an impact falls costs per mille
+            for phase, options in _steps(source, case, 2 if quick else 4, refined):
                 values = columns, load, amplitude_g, omega, refined, extreme, phase
                 labels = dict(zip(LABELS["frame"], values, strict=True))
-                yield _job("frame", labels, case, name, **options)
+                yield _job("frame", labels, case, source, **options)
 
 
 def _steps(
@@ -111,60 +105,60 @@ def _steps(
     With n = t/dt steps before an impact at t, a step of dt (1 + k/(N n)) has it the part k/N of a
     step earlier, for k = 0, 1, ..., N - 1. A source without equal steps is asked once, at its own.
     """
-    used = source.used if source.engine else None
-    if used is None or used.stepping is not Stepping.FIXED:
+    if not source.engine or source.accurate:
         if refined == 1.0:
             yield 0, {}
         return
+    used = source.used
     step = used.step if math.isfinite(used.step) else used.step_s * case.system.p
     impact = exact_of(case).impacts[0].time * case.system.p
     for phase in range(phases):
         yield phase, {"step": refined * (step * (1.0 + phase / phases * step / impact))}
 
 
-def _slides(sources: Asked, quick: bool) -> Iterator[Job]:
+def _slides(sources: Sequence[Source], quick: bool) -> Iterator[Job]:
     """Yield the blocks that slide; steps that land on impacts are not asked."""
     sine = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
     cube = SlidingBlock(width=1.0, height=1.0, friction=0.5)
-    below = Record(dt=HELD_S, samples=np.full(2, 0.9 * 0.2 * GRAVITY))
+    below = Record(dt=2.0, samples=np.full(2, 0.9 * 0.2 * GRAVITY))
     cases = {
         f"sine, friction {friction:g}": Question(system=_flat(friction), motion=sine)
-        for friction in (FRICTIONS[1:2] if quick else FRICTIONS)
+        for friction in ((0.2,) if quick else (0.1, 0.2, 0.3))
     }
     cases["launched at 6 m/s, friction 0.5"] = Question(
         system=cube, motion=Still(), start=(0.0, 6.0)
     )
     cases["held at 0.9 of friction 0.2"] = Question(system=_flat(0.2), motion=below)
-    for (case, question), (name, source) in product(cases.items(), sources):
+    for (case, question), source in product(cases.items(), sources):
         if not source.lands:
-            yield _job("slide", {"case": case}, question, name)
+            yield _job("slide", {"case": case}, question, source)
 
 
 def _flat(friction: float) -> SlidingBlock:
     return SlidingBlock(width=1.0, height=0.5, friction=friction)
 
 
-def _floors(sources: Asked) -> Iterator[Job]:
+def _floors(sources: Sequence[Source]) -> Iterator[Job]:
     """Yield a block on a floor that moves, as documented but in every way that an engine has."""
-    for name, source in sources:
+    for source in sources:
         if not (source.engine and source.preset == DEFAULT and source.used.frame == "world"):
             continue
         known = {each.name: each.metadata for each in fields(cast(Any, source.used.settings))}
-        for floor, rest_s in product(known["floor"]["allowed"].names, RESTS_S):
+        for floor, rest_s in product(known["floor"]["allowed"].names, (0.0, 1.0)):
             motion = Delayed(RIDE, rest_s) if rest_s else RIDE
-            question = Question(system=_flat(1.0), motion=motion)
+            case = Question(system=_flat(1.0), motion=motion)
             labels = {"floor": floor, "rest_s": rest_s}
-            yield _job("floor", labels, question, name, settings={"floor": floor})
+            yield _job("floor", labels, case, source, settings={"floor": floor})
 
 
-def _blocks(sources: Asked, quick: bool) -> Iterator[Job]:
+def _blocks(sources: Sequence[Source], quick: bool) -> Iterator[Job]:
     """Yield a block that rocks on a floor which engines move as documented."""
     for (amplitude_g, omega), half_cycles in product(PULSES[: 1 if quick else None], (1, 2)):
         pulse = SinePulse.in_g(amplitude_g, omega=omega, half_cycles=half_cycles)
         labels = {"amplitude_g": amplitude_g, "omega": omega, "half_cycles": half_cycles}
-        for name, source in sources:
+        for source in sources:
             if source.engine and source.used.frame == "world":
-                yield _job("block", labels, Question(system=BLOCK, motion=pulse), name)
+                yield _job("block", labels, Question(system=BLOCK, motion=pulse), source)
 
 
 @cache  # one for all sources
@@ -181,23 +175,25 @@ def measure(job: Job) -> Row:
     response, case, scene = ask(job), job.case, str(job.labels["scene"])
     exact = exact_of(case)
     row = {**summary(response), "reason": response.reason.name if response.reason else ""}
-    seen = {name: float(response.observables.get(name, math.nan)) for name in SEEN.get(scene, ())}
+    seen = {name: _seen(response, name) for name in SEEN[scene]}
     if scene == "frame":
         right, error = response.outcome is exact.outcome, _off(response, exact)
         return {**row, "exact": exact.peak_ratio, "right": right, "error": error, **seen}
     if scene == "slide":
         slips = {"slips": len(response.slips), "exact_slips": len(exact.slips)}
         return {**row, **slips, "slip_error_m": _slip_error(response, exact), **seen}
-    lag = float(response.observables.get(LAG, math.nan))
     if scene == "floor":
         travel = float(case.motion.displacement(case.motion.duration))
-        place = float(response.observables.get("place_m", math.nan))
-        return {**row, "carried": 1.0 + place / travel, LAG: lag}
+        return {**row, "carried": 1.0 + _seen(response, "place_m") / travel, **seen}
     failed = response.outcome is Outcome.FAILED  # what has failed once is not built again
     own = response if failed else exact_on_its_floor(job.asked, BLOCK, case.motion)
     peaks = {"exact": exact.peak_ratio, "own_exact": own.peak_ratio}
     errors = {"error": _off(response, exact), "own_error": _off(response, own)}
-    return {**row, **peaks, **errors, LAG: lag}
+    return {**row, **peaks, **errors, **seen}
+
+
+def _seen(response: Response, name: str) -> float:
+    return float(response.observables.get(name, math.nan))
 
 
 def _off(response: Response, exact: Response) -> float:
@@ -213,7 +209,7 @@ def _slip_error(response: Response, exact: Response) -> float:
     if response.outcome is Outcome.FAILED or len(response.slips) < len(exact.slips):
         return math.nan
     if not exact.slips:
-        return abs(float(response.observables.get("place_m", math.nan)))
+        return abs(_seen(response, "place_m"))
     least = sorted(map(abs, response.slips))[-len(exact.slips)]
     longest = [slip for slip in response.slips if abs(slip) >= least]
     return max(abs(one - other) for one, other in zip(longest, exact.slips, strict=True))
@@ -244,7 +240,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows of each scene, and a line for each source that is built for it."""
     parts = {}
     for scene, labels in LABELS.items():
-        columns = ["scene", *labels, "source", *SHARED, *MEASURED[scene]]
+        columns = ["scene", *labels, "source", *SHARED, *MEASURED[scene], *SEEN[scene]]
         mine = rows[rows["scene"] == scene].reindex(columns=columns)
         parts[scene] = mine.astype({name: TYPES[name] for name in columns if name in TYPES})
     frame, slide = (built(parts[scene]) for scene in ("frame", "slide"))
@@ -275,8 +271,7 @@ def _lines(rows: pd.DataFrame, line: Callable[[pd.DataFrame], Row], *labels: str
     found: list[Row] = []
     for key, group in rows.groupby(keys, sort=False):
         found.append({**dict(zip(keys, key, strict=True)), **line(group)})
-    found.sort(key=lambda each: order.index(each["source"]))
-    return pd.DataFrame(found)
+    return pd.DataFrame(sorted(found, key=lambda each: order.index(each["source"])))
 
 
 def _errors(rows: pd.DataFrame) -> Row:
@@ -384,8 +379,7 @@ def figures(tables: Tables) -> Mapping[str, Figure]:
         drawn["frame-time"] = draw_times(frames, "Rocking frames", along)
     if len(slides):
         size = tables["slide"].groupby("source")["slip_error_m"]
-        for name, known in (("median_error", size.median()), ("largest_error", size.max())):
-            slides[name] = slides["source"].map(known)
+        slides = slides.join(size.agg(median_error="median", largest_error="max"), on="source")
         drawn["slide-time"] = draw_times(slides, "Sliding blocks", "error of a slip  [m]")
     floors = tables["floor-summary"]
     return drawn | ({"floor": draw_floors(floors)} if len(floors) else {})

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -13,15 +14,14 @@ import pandas as pd
 
 from analytic.response import Reason, Response
 from engines.declaration import Stepping
-from studies.cases.extreme import Extreme, extremes
+from studies.cases.extreme import Extreme, contact_settings, extremes, takes_spring
 from studies.kit.jobs import Job, Question, Row, ask, summary, unanswered
 from studies.kit.options import Running
 from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
 from studies.measures.energy import SAMPLES
-from studies.measures.largest_step import PROBLEMS, largest_steps, searches
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
-from studies.measures.verdicts import ACCEPTED, Verdict, judge
+from studies.measures.verdicts import ACCEPTED, ENERGY_BAND, Verdict, invalidity, judge
 from studies.sources.registry import core_sources, resolve
 
 if TYPE_CHECKING:
@@ -38,17 +38,32 @@ FINER, FINEST = 5e-4, 1e-4
 """p dt of the remedy for steps that land on impacts, and for equal ones."""
 NOTHING = "none of those tried"
 GOOD = [verdict.value for verdict in ACCEPTED]
-UNBOUNDED = [reason.name for reason in (Reason.DIVERGED, Reason.THROWN, Reason.FAULT)]
-"""Failures in which a response has no bound."""
 LARGEST = ["largest_stable", "largest_accurate", "stable_over_contact", "accurate_over_contact"]
 STEPS = ["case", "contact_s", "factor", "source", "outcome", *LARGEST, "runs", "invalid", "message"]
+START, SMALLEST_STEP, LARGEST_STEP = 0.01, 1e-4, 1.0
+"""p dt from which a search sets out, and between which it searches."""
+FACTOR, QUICK_FACTOR = 1.05, 1.3
+"""Factor within which a largest step is found."""
+OWN_CONTACT = 0.01
+"""Time, in units of 1/p, of a contact that does not follow the step."""
+PROBLEMS = (
+    Extreme(name="peak before an impact", group="steps", half_cycles=1, onsets=1.5),
+    Extreme(name="peak after an impact", group="steps"),
+    Extreme(name="slender, H/B 50", group="steps", aspect=50.0),
+    Extreme(name="squat, H/B 1", group="steps", aspect=1.0),
+    Extreme(name="1 cm high", group="steps", width_m=0.01 / 3.0),
+    Extreme(name="20 half-cycles", group="steps", half_cycles=20, omega_over_p=4.0, onsets=1.5),
+)
 
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return a job for each extreme case and source, and a search for each source that steps."""
+    factor = QUICK_FACTOR if quick else FACTOR
     steps = [
         _job(case, source, {}, table="steps", contact_s=contact_s, factor=factor)
-        for case, source, contact_s, factor in searches(sources, quick)
+        for case in (PROBLEMS[1:2] if quick else PROBLEMS)
+        for source in sources
+        for contact_s in contact_times(case, source)
     ]
     return [*matrix_jobs(sources, quick), *steps]
 
@@ -67,6 +82,16 @@ def _job(case: Extreme, source: str, options: Mapping[str, Any], **labels: Any) 
     times = np.linspace(case.motion.duration, case.duration, SAMPLES)
     asked = Question(system=case.block, motion=case.motion, duration=case.duration, times=times)
     return Job(labels={**labels, "case": case.name}, case=asked, source=source, options=options)
+
+
+def contact_times(case: Extreme, source: str) -> tuple[float, ...]:
+    """Return the contact times [s] to try a source that steps with, nan for one without its own."""
+    asked = resolve(source)
+    if not asked.stepping:
+        return ()
+    if source.endswith(":fixed") and takes_spring(asked):
+        return (math.nan, OWN_CONTACT / case.block.p)
+    return (asked.used.contact_s if asked.engine else math.nan,)
 
 
 def measure(job: Job) -> Row:
@@ -101,13 +126,79 @@ def measure(job: Job) -> Row:
     return {**summary(response), **found, "remedy": next(mending, NOTHING if wrong else "")}
 
 
-def remedies(case: Extreme, source: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
+def largest_steps(
+    case: Extreme,
+    source: str,
+    contact_s: float,
+    factor: float,
+    ask: Callable[[Mapping[str, Any]], Response],
+) -> Row:
+    """Return the largest step of a source that is stable, and that is accurate, p dt.
+
+    Stable is one with which it gives a finite answer of the right outcome whose free rocking gains
+    no energy, accurate one with which the verdict is good as well. Both are nan where there is
+    none; message is that of the response with the largest accurate step, or else with START.
+    """
+    contact = contact_s * case.block.p
+
+    @cache
+    def run(step: float) -> tuple[Response, Row]:
+        options: Row = {"step": step}
+        # nan where the contact follows the step, as it does where it takes a spring
+        if not math.isnan(contact) and takes_spring(resolve(source)):
+            options["settings"] = contact_settings(source, contact, step)
+        response = ask(options)
+        return response, judge(case, source, response)
+
+    def stable(step: float) -> bool:
+        response, found = run(step)
+        right = response.outcome.value == found["exact_outcome"]
+        return right and not found["energy_growth"] > ENERGY_BAND
+
+    def accurate(step: float) -> bool:
+        return stable(step) and run(step)[1]["verdict"] == Verdict.GOOD.value
+
+    most = [largest_good(good, factor) for good in (stable, accurate)]
+    runs = run.cache_info().currsize
+    best, _ = run(START if math.isnan(most[1]) else most[1])
+    return {
+        # a search that ends is an answer, though it be that no step is stable
+        "outcome": "searched",
+        **dict(zip(LARGEST, (*most, *(step / contact for step in most)), strict=True)),
+        **{"runs": runs, "invalid": invalidity(case, source), "message": best.message},
+    }
+
+
+def largest_good(good: Callable[[float], bool], factor: float) -> float:
+    """Return the largest step up to which all steps tried are good; nan if not even the smallest.
+
+    From START to finer steps until one is good, to coarser ones until one is not, and between the
+    two. A step beyond the first bad one that happens to be good does not count.
+    """
+    low = START
+    while not good(low):
+        low *= 0.25
+        if low < SMALLEST_STEP:
+            return math.nan
+    high = low
+    while good(high):
+        low = high
+        if high >= LARGEST_STEP:
+            return LARGEST_STEP
+        high = min(2.0 * high, LARGEST_STEP)
+    while high > factor * low:
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if good(middle) else (low, middle)
+    return low
+
+
+def remedies(case: Extreme, source: str) -> Iterator[tuple[str, str, Row]]:
     """Yield settings to try: in words, the source and its options, which are not the case's."""
     asked, options = resolve(source), case.options(source)
     if asked.kind == "solver":
         for step in (1e-3, 1e-4):
-            finer = {"step": step, "event_tolerance": 1e-13}
-            yield f"p dt {step:g}, events to 1e-13", source, finer
+            words = f"p dt {step:g}, events to 1e-13"
+            yield words, source, {"step": step, "event_tolerance": 1e-13}
     if asked.kind == "peer":
         yield "rtol 1e-12", source, {"rtol": 1e-12}
     if not asked.engine:
@@ -122,11 +213,11 @@ def remedies(case: Extreme, source: str) -> Iterator[tuple[str, str, dict[str, A
         yield words, source, {**options, "settings": settings}
     if case.contact is not None:
         yield "the preset's own contact", source, plain
-    if case.step_s is None and tuned:
-        step = FINEST if preset.stepping is Stepping.FIXED else FINER
-        yield f"p dt {step:g}", source, {**options, "step": step}
     if case.step_s is not None:
         yield "the preset's own step", source, better
+    elif tuned:
+        step = FINEST if preset.stepping is Stepping.FIXED else FINER
+        yield f"p dt {step:g}", source, {**options, "step": step}
     for other in engine.presets[1:] if preset is not engine.best else ():
         if other is not preset or better != options:
             yield f"preset {other.name}", f"{engine.name}:{other.name}", better
@@ -153,13 +244,11 @@ def by_preset(matrix: pd.DataFrame) -> pd.DataFrame:
     """Return for each preset how many engines have it, and how many valid cases they predict."""
     valid = matrix["verdict"] != Verdict.INVALID.value
     asked = matrix[matrix["source"].map(is_engine) & valid]
-    asked = asked.assign(
-        preset=asked["source"].map(preset_of), right=asked["verdict"] == Verdict.GOOD.value
-    )
-    found = asked.groupby("preset").agg(
+    asked = asked.assign(right=asked["verdict"] == Verdict.GOOD.value)
+    found = asked.groupby(asked["source"].map(preset_of)).agg(
         engines=("source", "nunique"), right=("right", "sum"), valid=("right", "size")
     )
-    return found.loc[in_order(found.index)].reset_index()
+    return found.loc[in_order(found.index)].rename_axis("preset").reset_index()
 
 
 def verdicts(matrix: pd.DataFrame) -> pd.DataFrame:
@@ -193,8 +282,9 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     """Return scores by preset, verdicts, failures and what mends them, and the largest steps."""
     matrix, steps = tables["stability"], tables["steps"]
     wrong = failures(matrix)
+    unbounded = [reason.name for reason in (Reason.DIVERGED, Reason.THROWN, Reason.FAULT)]
     wrong = wrong.assign(
-        unbounded=wrong["failure"].isin(UNBOUNDED), mended=~wrong["remedy"].isin(["", NOTHING])
+        unbounded=wrong["failure"].isin(unbounded), mended=~wrong["remedy"].isin(["", NOTHING])
     )
     kinds = wrong.groupby("verdict", sort=False)[["unbounded", "mended"]].agg("sum")
     kinds.insert(0, "failures", wrong["verdict"].value_counts())

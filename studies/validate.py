@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import islice, pairwise
 from math import inf
@@ -144,32 +144,21 @@ def _with_halves(sources: Sequence[str], cases: int, tests: int, options: Option
     asked = f"--cases is {cases}, --tests {tests}"
     _refuse_too_much(asked, cases + tests, 3 * tuple(sources), options)
     found = []
-    for use, case in both_sets(cases, tests, options.seed, options.scene):
-        for source, settings in options.settings(sources, case.block).items():
-            job = _job({"set": use}, case, source, settings)
-            if (finer := halved(job)) is None:
-                words = "with --halves it must be an engine with steps that can be halved"
-                raise BadInputError(f"--sources is {source!r}; {words}")
-            pair = enumerate((job, finer))
-            found += [replace(each, labels={**job.labels, "half": half}) for half, each in pair]
+    for use, seed, count in ((TEST, options.seed, tests), (CALIBRATE, options.seed + 1, cases)):
+        rocked = filter(_rocks, draw(seed, options.scene))
+        for number, case in enumerate(islice(rocked, count)):
+            for source, settings in options.settings(sources, case.block).items():
+                job = _job({"set": use}, replace(case, case=number), source, settings)
+                if (finer := halved(job)) is None:
+                    words = "with --halves it must be an engine with steps that can be halved"
+                    raise BadInputError(f"--sources is {source!r}; {words}")
+                pair = enumerate((job, finer))
+                found += [replace(each, labels={**job.labels, "half": half}) for half, each in pair]
     return found
 
 
-def both_sets(
-    cases: int, tests: int, seed: int, scene: Drawn = "block"
-) -> Iterator[tuple[str, RandomCase]]:
-    """Yield cases that test, drawn with the seed, and cases that calibrate, with the next one.
-
-    Kept are those in which the exact solution rocks and survives.
-    """
-    for use, first, count in ((TEST, seed, tests), (CALIBRATE, seed + 1, cases)):
-        rocked = (
-            case
-            for case in draw(first, scene)
-            if simulate(case.block, case.motion).outcome is Outcome.ROCKED
-        )
-        for number, case in enumerate(islice(rocked, count)):
-            yield use, replace(case, case=number)
+def _rocks(case: RandomCase) -> bool:
+    return simulate(case.block, case.motion).outcome is Outcome.ROCKED
 
 
 def _at_published_steps(engines: Sequence[str], cases: int, options: Options) -> list[Job]:
@@ -204,17 +193,18 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     return {"errors": errors, "drawn": left, "bands": bands(errors)}
 
 
-PEAKS, KAPPAS = (0.01, 0.1, 0.5), (10.0, 100.0)
-"""Where bands end: of the exact peak over θcr, and of the larger of κ and κη."""
 
 
 def bands(errors: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each source and band of the cases that survive in the exact solution."""
     rocked = errors[errors["exact_outcome"] == "rocked"]
     rocked = rocked.assign(size=rocked["error"].abs())
-    ways = {"peak": (rocked["exact_peak"], PEAKS), "κ": (conditioning_of(rocked), KAPPAS)}
+    ways = (
+        ("peak", rocked["exact_peak"], (0.01, 0.1, 0.5)),
+        ("κ", conditioning_of(rocked), (10.0, 100.0)),
+    )
     found = []
-    for by, (values, ends) in ways.items():
+    for by, values, ends in ways:
         between = [f"from {low:g} to {high:g}" for low, high in pairwise(ends)]
         names = [f"below {ends[0]:g}", *between, f"above {ends[-1]:g}"]
         band = pd.cut(values, [0.0, *ends, inf], right=False, labels=names)
@@ -229,10 +219,6 @@ def bands(errors: pd.DataFrame) -> pd.DataFrame:
     return pd.concat(found, ignore_index=True)
 
 
-RESOLVED = 1e-9
-"""Errors below are as good as none: no estimate has to bound them."""
-
-
 def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the rows at the whole step, each with its estimate, and with the error over that.
 
@@ -243,7 +229,7 @@ def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
     pairs = zip(whole.to_dict("records"), finer, strict=True)
     whole["estimate"] = [estimate_of(*pair) for pair in pairs]
     errors = whole["error"].abs()
-    over = (errors / whole["estimate"]).where(errors > RESOLVED, 0.0)
+    over = (errors / whole["estimate"]).where(errors > 1e-9, 0.0)
     return whole.assign(over=over.where(errors.notna() & whole["estimate"].notna()))
 
 
@@ -329,7 +315,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         "the pulse, or of the velocity ratio of impacts": quantiles(errors[s < WELL_CONDITIONED]),
         "Errors over S": quantiles(errors.assign(error=errors["error"] / s)),
         **{f"In bands of {by}": each for by, each in tables["bands"].groupby("by", sort=False)},
-        "The largest errors": worst(errors),
+        "The largest errors": worst(errors, 5),
         "Cases that were drawn": tables["drawn"],
     }
 
@@ -341,38 +327,30 @@ def _at(table: pd.DataFrame, target: float) -> pd.DataFrame:
 
 def off(table: pd.DataFrame, name: str) -> pd.DataFrame:
     """Return how many cases are off at all settings of each preset, a column for each error."""
-    found = pd.concat([_at(table, target).assign(target=f"{target:g}") for target in TARGETS])
-    uses = ["engine", "preset", "random_cases"]
-    by_use = found.groupby([*uses[:2], "target"], sort=False)[[uses[2], name]].sum().reset_index()
-    return by_use.pivot_table(name, uses, "target", sort=False).astype(int).reset_index()
+    counts = {f"{target:g}": _at(table, target)[name] for target in TARGETS}
+    settings = _at(table, TARGETS[0]).assign(**counts)
+    uses = settings.groupby(["engine", "preset"], sort=False)
+    return uses[["random_cases", *counts]].sum().reset_index()
 
 
 def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each source: outcomes right and wrong, and quantiles of the error."""
     levels = {"median_error": 0.5, "p90_error": 0.9, "p99_error": 0.99, "max_error": 1.0}
-    return pd.DataFrame(
-        [
-            {
-                "source": source,
-                "cases": len(rows),
-                "agree": rows["agrees"].sum(),
-                **counted(wrong_in(rows)),
-                **{name: rows["error"].abs().quantile(level) for name, level in levels.items()},
-            }
-            for source, rows in errors.groupby("source", sort=False)
-        ]
-    )
+    lines = []
+    for source, rows in errors.groupby("source", sort=False):
+        line = {"source": source, "cases": len(rows), "agree": rows["agrees"].sum()}
+        ends = {name: rows["error"].abs().quantile(level) for name, level in levels.items()}
+        lines.append({**line, **counted(wrong_in(rows)), **ends})
+    return pd.DataFrame(lines)
 
 
-POSED = ("columns", "load", "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p")
-
-
-def worst(errors: pd.DataFrame, count: int = 5) -> pd.DataFrame:
+def worst(errors: pd.DataFrame, count: int) -> pd.DataFrame:
     """Return some cases that each source gets wrong, and then those in which it errs most."""
     size = errors["error"].abs().where(errors["agrees"], inf)
     order = errors.assign(size=size).sort_values("size", ascending=False)
     first = order.groupby("source").head(count).sort_values("source", kind="stable")
-    posed = [name for name in POSED if name in order]
+    frame = [name for name in ("columns", "load") if name in order]
+    posed = [*frame, "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p"]
     found = ["outcome", "exact_outcome", "exact_peak", "error"]
     return first[["source", "case", *posed, *found, "kappa", "kappa_eta", "sensitivity"]]
 

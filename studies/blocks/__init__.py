@@ -44,10 +44,10 @@ ALL_SCALES = 0.0
 CASE, PAIR = ["name", "record", "scale"], ["name", "record"]
 FACTS = ["kappa", "sensitivity", "min_normal", "friction_needed"]
 """Columns of the exact solution, which all sources of a case are read beside."""
-FOUND = ["lifts", "margin", "margin_friction", "islands"]
+FOUND = [*strength.Strength._fields]
 """Columns of a block under a record, at whatever factor."""
-SLIDES, SLIDES_FIRST = "slides", "slides first"
-"""Why a block has no margin: its friction is below B/H, or less than its rocking needs."""
+SLIDES_FIRST = "slides first"
+"""Friction is less than the rocking needs: a block has no margin, a model no answer."""
 
 
 def jobs(
@@ -92,7 +92,13 @@ def measure(job: Job) -> Row:
     """Return an answer, with the facts of the exact one; or how strong a record overturns."""
     block, motion = cast(RigidBlock, job.case.system), cast(Record, job.case.motion)
     if job.labels["scale"] == ALL_SCALES:
-        return _margin(job, block, motion)
+        try:
+            if job.lost is not None:
+                raise RuntimeError(job.lost.message)
+            found = strength.strength(block, motion, job.case.start)
+        except RuntimeError as error:
+            return unanswered(str(error))
+        return {**unanswered(""), "outcome": "found", **found._asdict()}
     response = ask(job)
     row, slides = summary(response), not isinstance(block, RigidBlock)
     note = baseline_note(motion, job.labels["baseline"] or None)
@@ -103,16 +109,6 @@ def measure(job: Job) -> Row:
         return row
     row |= conditioning_of_one(block, motion, job.case.start, response)
     return {**row, **{name: getattr(response, name) for name in FACTS[2:]}}
-
-
-def _margin(job: Job, block: RigidBlock, motion: Record) -> Row:
-    try:
-        if job.lost is not None:
-            raise RuntimeError(job.lost.message)
-        found = strength.strength(block, motion, job.case.start)
-    except RuntimeError as error:
-        return unanswered(str(error))
-    return {**unanswered(""), "outcome": "found", **dict(zip(FOUND, found, strict=True))}
 
 
 def tabulate(rows: pd.DataFrame, sources: Sequence[str] = ()) -> Tables:
@@ -139,7 +135,7 @@ def tabulate(rows: pd.DataFrame, sources: Sequence[str] = ()) -> Tables:
     weak = short & (table["scale"] <= table["margin"])
     weak |= table["friction"] < table["margin_friction"]
     first = weak.groupby(pair).transform("any")
-    words = [SLIDES, Outcome.FAILED.value, SLIDES_FIRST]
+    words = ["slides", Outcome.FAILED.value, SLIDES_FIRST]
     table["no_margin"] = np.select([flat, failed, first], words, "")
     table.loc[table["no_margin"] != "", ["margin", "islands"]] = math.nan, ""
     engines = table["source"].map(lambda name: bool(resolve(name).engine))
@@ -194,8 +190,7 @@ def figures(tables: Tables) -> Mapping[str, Figure]:
     """Draw the ranking of the blocks."""
     from studies.drawing.blocks import draw_blocks
 
-    rows = tables["blocks"]
-    title = finding(tables).removesuffix(".")
+    rows, title = tables["blocks"], finding(tables).removesuffix(".")
     return {"blocks": draw_blocks(ranked(rows), sorted(set(rows["scale"])), title)}
 
 
@@ -253,6 +248,8 @@ def command(
         Correct the records by what scipy.signal.detrend takes away: their mean (constant) or the
         line that fits them best (linear).
     """
+    from jinja2 import Environment, PackageLoader
+
     arguments.refuse_repeats("--scale", scale)
     arguments.refuse_repeats("--record", [Path(path.name) for path in record])
     motions = recorded(record, units, baseline)
@@ -265,24 +262,17 @@ def command(
     given = {"sources": sources, "scale": scale, "units": units, "baseline": baseline}
     found = jobs(listed, grounds, scale, sources, baseline or "")
     code = study.carry_out(out, found, running, record=[*grounds], **given)
-    write_page(out)
-    return code
-
-
-def write_page(folder: Path) -> None:
-    """Write what a folder shows as a page to hand on."""
-    from jinja2 import Environment, PackageLoader
-
-    tables = STUDY.read(folder)
+    tables = STUDY.read(out)
     pages = Environment(loader=PackageLoader("studies.blocks", "."), autoescape=True)
     page = pages.get_template("page.html.jinja").render(
         finding=finding(tables),
-        picture=b64encode((folder / "blocks.png").read_bytes()).decode(),
+        picture=b64encode((out / "blocks.png").read_bytes()).decode(),
         tables={
             title: table.to_html(index=False, na_rep="–", float_format="{:.4g}".format)
             for title, table in shown(tables).items()
         },
         rules=strength,
-        made=provenance_of(folder),
+        made=provenance_of(out),
     )
-    write_text(folder / "blocks.html", page)
+    write_text(out / "blocks.html", page)
+    return code

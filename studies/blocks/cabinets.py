@@ -14,8 +14,6 @@ from studies.kit.scene_options import MOST_M
 
 NEEDED = ("name", "width", "height")
 COLUMNS = (*NEEDED, "friction", "tilt")
-LEAST_M, LEAST_FRICTION = 1e-3, 1e-3
-"""Least size [m] of a block of a list, and least coefficient of friction: no base is smoother."""
 MOST_LETTERS = 300
 """Of a name."""
 SHOWN = 10
@@ -91,9 +89,10 @@ def _cabinet(cells: Mapping[str, str]) -> Cabinet:
     if not (0 < len(name) <= MOST_LETTERS and name.isprintable()):
         unseen = "without ends of lines, tabs, marks of direction and the like"
         raise _bad("name", name, f"1 to {MOST_LETTERS} letters, {unseen}")
-    width, height = (_number(cells, name, LEAST_M, MOST_M, " m") for name in NEEDED[1:])
+    width, height = (_number(cells, name, 1e-3, MOST_M, " m") for name in NEEDED[1:])
     lying = math.nextafter(0.5 * math.pi / math.atan2(width, height), 0.0)
-    friction = _number(cells, "friction", LEAST_FRICTION, 1e6) if cells.get("friction") else None
+    # no base is smoother
+    friction = _number(cells, "friction", 1e-3, 1e6) if cells.get("friction") else None
     tilt = _number(cells, "tilt", -lying, lying, " α") if cells.get("tilt") else None
     return Cabinet(name=name, width_m=width, height_m=height, friction=friction, tilt=tilt)
 

@@ -25,19 +25,19 @@ MOST_ONSETS, BEYOND = 100.0, 1.25
 WIDTH = 1e-6
 """Relative width to which the margin is known."""
 AT_ONCE = 32
-"""Factors that are tried before the next are."""
+"""Factors that are tried side by side."""
 
 
 class Strength(NamedTuple):
     """Factors on a motion: those that lift and overturn, and where the block survives again.
 
-    The margin is inf where none up to MOST_ONSETS onsets overturns; friction is what the exact
+    The margin is inf where none up to MOST_ONSETS onsets overturns; the friction is what the exact
     solution needs there. Islands are in words: "1.02-1.04 1.2".
     """
 
     lifts: float
     margin: float
-    friction: float
+    margin_friction: float
     islands: str
 
 
@@ -55,7 +55,11 @@ def strength(block: RigidBlock, motion: Record, start: tuple[float, float]) -> S
         return simulate(block, motion.scaled(factor), start=start).friction_needed
 
     onset, at_rest = math.tan(block.alpha) * block.gravity / strongest(motion), start == (0.0, 0.0)
-    lifts, factors, found = onset if at_rest else 0.0, grid(onset, at_rest), list[bool]()
+    lifts, found = onset if at_rest else 0.0, list[bool]()
+    count = round(math.log(MOST_ONSETS) / math.log1p(APART))
+    factors = [onset * (1.0 + APART) ** n for n in range(1, count + 1)]
+    if not at_rest:
+        factors = [onset * APART * n for n in range(round(1.0 / APART) + 1)] + factors
     with ThreadPoolExecutor(usable_cores()) as pool:
         while len(found) < len(factors):
             found += pool.map(falls, factors[len(found) : len(found) + AT_ONCE])
@@ -69,15 +73,7 @@ def strength(block: RigidBlock, motion: Record, start: tuple[float, float]) -> S
         middle = 0.5 * (low + high)
         low, high = (low, middle) if falls(middle) else (middle, high)
     tried = [*zip(factors, found, strict=False)][first:]
-    near = [pair for pair in tried if pair[0] <= BEYOND * factors[first]]
+    near = (pair for pair in tried if pair[0] <= BEYOND * factors[first])
     runs = [[*run] for fell, run in groupby(near, key=lambda pair: pair[1]) if not fell]
     ends = (dict.fromkeys(f"{run[end][0]:.4g}" for end in (0, -1)) for run in runs)
     return Strength(lifts, high, needed(high), " ".join(map("-".join, ends)))
-
-
-def grid(onset: float, at_rest: bool) -> list[float]:
-    """Return the factors that are tried: above the onset, or above 0 where a block leans."""
-    count = round(math.log(MOST_ONSETS) / math.log1p(APART))
-    above = [onset * (1.0 + APART) ** n for n in range(1, count + 1)]
-    below = [] if at_rest else [onset * APART * n for n in range(round(1.0 / APART) + 1)]
-    return below + above

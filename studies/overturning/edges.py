@@ -34,7 +34,6 @@ WIDTH, ISLAND_WIDTH = 1e-10, 1e-8
 """Amplitude over g tan(alpha) to which an edge is known, and an extremum of the margin followed."""
 
 IntArray = NDArray[np.intp]
-ModeArray = NDArray[np.int32]
 Solve = Callable[[IntArray, FloatArray], Modes]
 """Columns and amplitudes over g tan(alpha) -> modes; all (n,)."""
 
@@ -44,7 +43,7 @@ class Points(NamedTuple):
 
     column: IntArray
     amplitude: FloatArray
-    mode: ModeArray
+    mode: NDArray[np.int32]
 
 
 class Edges(NamedTuple):
@@ -53,8 +52,8 @@ class Edges(NamedTuple):
     column: IntArray
     low: FloatArray
     high: FloatArray
-    below: ModeArray
-    above: ModeArray
+    below: NDArray[np.int32]
+    above: NDArray[np.int32]
 
 
 def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFrame:
@@ -62,20 +61,16 @@ def find_edges(solve: Solve, columns: int, amplitudes: FloatArray) -> pd.DataFra
 
     RuntimeError if islands are still found within islands after ROUNDS searches.
     """
+    number, fine = np.arange(columns), 0
     grid = np.broadcast_to(amplitudes, (columns, len(amplitudes)))
-    number = np.broadcast_to(np.arange(columns)[:, None], grid.shape)
-    found = solve(number.ravel(), grid.ravel())
-    points = Points(number.ravel(), grid.ravel(), found.mode)
-    new, fine = extrema(solve, grid, found), 0
+    mode, new = sample(solve, number, grid)
+    points = Points(number.repeat(len(amplitudes)), grid.ravel(), mode.ravel())
     for _ in range(ROUNDS):
         points = ordered(points, *new)
         edges = bisect(solve, points)
         # both sides of edges may show modes that the grid does not
-        points = ordered(
-            points,
-            Points(edges.column, edges.low, edges.below),
-            Points(edges.column, edges.high, edges.above),
-        )
+        column, low, high, below, above = edges
+        points = ordered(points, Points(column, low, below), Points(column, high, above))
         new = mode_changes(solve, points)
         if not any(len(each.mode) for each in new) and fine < FINE_ROUNDS:
             new, fine = beside_edges(solve, points, edges), fine + 1
@@ -107,24 +102,18 @@ def beside_edges(solve: Solve, points: Points, edges: Edges) -> list[Points]:
     alike = (points.mode[:-1] >= 0) == (points.mode[1:] >= 0)
     cell = between(points, touches & wide & alike)
     grid = cell.low[:, None] + (cell.high - cell.low)[:, None] * np.linspace(0.0, 1.0, SAMPLES)
-    number = np.broadcast_to(cell.column[:, None], grid.shape)
-    found = solve(number.ravel(), grid.ravel())
-    mode = found.mode.reshape(grid.shape)
+    mode, beyond = sample(solve, cell.column, grid)
     other = (mode >= 0) != (cell.below >= 0)[:, None]
-    beyond = extrema(lambda i, amplitude: solve(cell.column[i], amplitude), grid, found)
-    return [
-        Points(number[other], grid[other], mode[other]),
-        *(each._replace(column=cell.column[each.column]) for each in beyond),
-    ]
+    number = np.broadcast_to(cell.column[:, None], grid.shape)
+    return [Points(number[other], grid[other], mode[other]), *beyond]
 
 
 def bisect(solve: Solve, points: Points) -> Edges:
     """Bisect every change of the outcome between ordered points."""
     first, second = points.mode[:-1], points.mode[1:]
-    direct = (first >= 0) & (second >= 0) & (first != second) & _close(points)
-    column, low, high, below, above = edges = between(
-        points, ((first >= 0) != (second >= 0)) | direct
-    )
+    direct = (first != second) & (np.diff(points.amplitude) <= WIDTH)
+    edges = between(points, ((first >= 0) != (second >= 0)) | ((first >= 0) & direct))
+    column, low, high, below, above = edges
     while len(wide := np.flatnonzero(high - low > WIDTH)):
         middle = 0.5 * (low[wide] + high[wide])
         mode = solve(column[wide], middle).mode
@@ -135,19 +124,15 @@ def bisect(solve: Solve, points: Points) -> Edges:
     return edges
 
 
-def _close(points: Points) -> NDArray[np.bool_]:
-    return np.diff(points.amplitude) <= WIDTH
-
-
 def mode_changes(solve: Solve, points: Points) -> list[Points]:
     """Return points that survive between neighbours that overturn after other numbers of impacts.
 
     Where there is none to WIDTH, the two points on either side of the change.
     """
     first, second = points.mode[:-1], points.mode[1:]
-    column, low, high, below, above = between(
-        points, (first >= 0) & (second >= 0) & (first != second) & ~_close(points)
-    )
+    differ = (first >= 0) & (second >= 0) & (first != second)
+    wide = np.diff(points.amplitude) > WIDTH
+    column, low, high, below, above = between(points, differ & wide)
     search, found = np.arange(len(column)), []
     while len(search):
         middle = 0.5 * (low[search] + high[search])
@@ -165,17 +150,24 @@ def mode_changes(solve: Solve, points: Points) -> list[Points]:
     return found
 
 
-def extrema(solve: Solve, grid: FloatArray, known: Modes) -> list[Points]:
-    """Follow every local extremum of the margin towards zero; return the points beyond zero."""
-    over, margin = (known.mode >= 0).reshape(grid.shape), known.margin.reshape(grid.shape)
+def sample(
+    solve: Solve, column: IntArray, grid: FloatArray
+) -> tuple[NDArray[np.int32], list[Points]]:
+    """Return the modes on a grid of columns, a row each, and points that differ between two of it.
+
+    These are beyond zero on the way to a local extremum of the margin towards zero.
+    """
+    found = solve(column.repeat(grid.shape[1]), grid.ravel())
+    mode, margin = found.mode.reshape(grid.shape), found.margin.reshape(grid.shape)
+    over = mode >= 0
     alike = (over[:, 1:-1] == over[:, :-2]) & (over[:, 1:-1] == over[:, 2:])
     # a surviving maximum, or an overturning minimum, is a least distance from the edge
     distance = np.where(np.isfinite(margin), np.abs(margin), np.inf)
     here = distance[:, 1:-1]
     least = (here <= distance[:, :-2]) & (here < distance[:, 2:])
-    column, row = np.nonzero(alike & least & np.isfinite(here))
-    low, middle, high = (grid[column, row + k] for k in range(3))
-    best, side = distance[column, row + 1], over[column, row + 1]
+    line, at = np.nonzero(alike & least & np.isfinite(here))
+    low, middle, high = (grid[line, at + k] for k in range(3))
+    best, side, column = distance[line, at + 1], over[line, at + 1], column[line]
     search, beyond = np.arange(len(column)), []
     while len(search):
         right = high[search] - middle[search] > middle[search] - low[search]
@@ -193,4 +185,4 @@ def extrema(solve: Solve, grid: FloatArray, known: Modes) -> list[Points]:
         middle[search[better]], best[search[better]] = trial[better], size[better]
         search = search[~crossed]
         search = search[high[search] - low[search] > ISLAND_WIDTH]
-    return beyond
+    return mode, beyond

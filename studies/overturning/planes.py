@@ -23,8 +23,6 @@ ASPECTS, WIDTHS_M = (2.0, 3.0, 4.0), (0.5, 2.0)
 RATIOS = tuple((0.5 * np.arange(1, 17)).tolist())
 ONSETS = tuple((1.0 + 0.6 * (np.arange(15) + 0.5)).tolist())
 """ω/p, and amplitudes over g tan α."""
-REST_S = 1.0
-"""For how long all is at rest before every other pulse [s], in which an engine may fall asleep."""
 CLOSE = 0.1
 """A peak within this part of the exact one is close."""
 CASE = ["pulse", "aspect", "width_m", "onsets", "omega_over_p", "rest_s"]
@@ -41,8 +39,8 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
         pulses, aspects, WIDTHS_M, ONSETS[::every], RATIOS[::every]
     ):
         block, motion = posed(pulse, aspect, width_m, onsets, ratio)
-        # every other pulse of a plane
-        rest_s = REST_S * ((ONSETS.index(onsets) + RATIOS.index(ratio)) % 2)
+        # before every other pulse of a plane all is at rest, and an engine may fall asleep
+        rest_s = float((ONSETS.index(onsets) + RATIOS.index(ratio)) % 2)
         labels = {
             **{"pulse": pulse, "aspect": aspect, "width_m": width_m},
             "amplitude_g": onsets * math.tan(block.alpha),
@@ -96,12 +94,12 @@ def tables(rows: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
     known = with_verdicts(rows)
     written = known.drop(columns="error")
     known = known[(known["source"] != "exact") & (known["verdict"] != INVALID)]
+    sides = {"false_overturnings": FALSE, "missed_overturnings": MISSED}
     verdict = known["verdict"].replace({FALSE: FALL, MISSED: FALL})
     known = known.assign(
         **{kind: verdict == kind for kind in KINDS},
+        **{name: known["verdict"] == side for name, side in sides.items()},
         **{"close": verdict == RIGHT, "far": verdict == OFF, "size": known["error"].abs()},
-        false_overturnings=known["verdict"] == FALSE,
-        missed_overturnings=known["verdict"] == MISSED,
     )
 
     def sums(*names: str) -> dict[str, tuple[str, str]]:
@@ -110,7 +108,7 @@ def tables(rows: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
     by_width, by_rest = (known.groupby(["source", by], sort=False) for by in ("width_m", "rest_s"))
     parts = by_width.agg(
         cases=("close", "size"),
-        **sums("close", "far", "false_overturnings", "missed_overturnings"),
+        **sums("close", "far", *sides),
         median_error=("size", "median"),
         p90_error=("size", lambda size: size.quantile(0.9)),
         **sums("wall_s", *KINDS),

@@ -10,10 +10,10 @@ from commanding import refused
 
 from analytic import peak_ratios, simulate
 from analytic.maps import Modes
+from studies import overturning
 from studies.cases.window import AXES, Window
 from studies.kit.run import run
-from studies.overturning import edges, planes, study
-from studies.overturning.study import Options
+from studies.overturning import Options, edges, planes
 
 SMALL = Options(columns=12, rows=60, low=0.3, high=6.0)
 WINDOW = SMALL.window(quick=False)
@@ -61,7 +61,7 @@ def test_modes_without_an_island_between_them_are_an_edge():
 @pytest.mark.parametrize("over", AXES)
 def test_edges_are_those_of_peak_ratios_and_of_cases(over):
     window = Window(over=over, columns=8, rows=80)
-    found = study.edges_of(window, "exact", window.centres(8))
+    found = overturning.edges_of(window, "exact", window.centres(8))
     apart = np.diff(found["low"], prepend=-1.0, append=99.0)
     wide = (np.minimum(abs(apart[1:]), abs(apart[:-1])) > 1e-8) & (found["low"] > 1.0 + 1e-8)
     x, alpha = found["x"].to_numpy(), window.alpha(found["x"].to_numpy())
@@ -77,18 +77,18 @@ def test_edges_are_those_of_peak_ratios_and_of_cases(over):
 
 def test_strips_change_nothing_and_columns_stand_alone(monkeypatch):
     x = WINDOW.centres(12)
-    whole = study.edges_of(WINDOW, "housner", x)
-    monkeypatch.setattr(study, "STRIP", 3 * WINDOW.rows)
-    pd.testing.assert_frame_equal(whole, study.edges_of(WINDOW, "housner", x))
-    alone = study.edges_of(WINDOW, "housner", x[[7]])
+    whole = overturning.edges_of(WINDOW, "housner", x)
+    monkeypatch.setattr(overturning, "STRIP", 3 * WINDOW.rows)
+    pd.testing.assert_frame_equal(whole, overturning.edges_of(WINDOW, "housner", x))
+    alone = overturning.edges_of(WINDOW, "housner", x[[7]])
     pd.testing.assert_frame_equal(alone, whole[whole["x"] == x[7]].reset_index(drop=True))
 
 
 @pytest.fixture(scope="module")
 def tables():
     """Return the tables of a small map of two models."""
-    jobs = study.jobs(("exact", "housner"), False, SMALL)
-    return study.tabulate(pd.DataFrame(run(jobs, study.measure)))
+    jobs = overturning.jobs(("exact", "housner"), False, SMALL)
+    return overturning.tabulate(pd.DataFrame(run(jobs, overturning.measure)))
 
 
 def test_intervals_and_their_differences_are_those_of_a_fine_grid(tables):
@@ -101,44 +101,44 @@ def test_intervals_and_their_differences_are_those_of_a_fine_grid(tables):
     # a cell on either side of each of some 100 edges of 12 columns
     assert line["false"] == pytest.approx((~exact & housner).mean(), abs=1e-3)
     assert line["missed"] == pytest.approx((exact & ~housner).mean(), abs=1e-3)
-    assert f"{100.0 * (line['false'] + line['missed']):.2g} %" in study.finding(tables)
-    assert study.window_of(tables["window"]) == WINDOW
+    assert f"{100.0 * (line['false'] + line['missed']):.2g} %" in overturning.finding(tables)
+    assert overturning.window_of(tables["window"]) == WINDOW
 
 
 def test_an_engine_is_judged_on_cells_beside_edges_and_by_its_threshold():
-    jobs = study.jobs(("mujoco:fixed",), True, SMALL)
+    jobs = overturning.jobs(("mujoco:fixed",), True, SMALL)
     made = [{**job.labels, "source": job.source, "message": ""} for job in jobs]
-    rows = pd.DataFrame([{**made[0], **study.measure(jobs[0])}, *made[1:]])
+    rows = pd.DataFrame([{**made[0], **overturning.measure(jobs[0])}, *made[1:]])
     x, onsets = rows["x"].fillna(1.0).to_numpy(), rows["onsets"].to_numpy()
     right = np.where(WINDOW.modes(x, onsets).mode >= 0, "overturned", "rocked")
     right[1], right[2] = {"overturned": "rocked", "rocked": "overturned"}[right[1]], "failed"
     rows["outcome"] = np.where(rows["table"] == "map", "mapped", right)
     rows = rows.assign(peak_ratio=0.5, impacts=1, steps=1, wall_s=0.0, shift=-0.02, runs=18)
-    found = study.tabulate(rows)
+    found = overturning.tabulate(rows)
     (line,) = found["differences"].to_dict("records")
     assert (line["cells"], line["false"] + line["missed"]) == (64, 1 / 64)
     assert (line["rest_wrong"], line["no_answer"]) == (0, 1)
-    assert "62 of 64" in study.finding(found)
-    beside, shifts = list(study.shown(found).values())[-3:-1]
+    assert "62 of 64" in overturning.finding(found)
+    beside, shifts = list(overturning.shown(found).values())[-3:-1]
     assert beside.iloc[0, 1:].tolist() == [1.0, 1.0, 1.0]
     assert shifts.iloc[0, 1:].tolist() == [len(found["thresholds"])] * 2 + [0.02, 0.02]
 
 
 def test_a_threshold_is_found_where_it_is_or_not_at_all():
-    jobs = study.jobs(("exact", "mujoco:fixed"), True, SMALL)
+    jobs = overturning.jobs(("exact", "mujoco:fixed"), True, SMALL)
     searches = [job for job in jobs if job.labels["table"] == "thresholds"]
     assert searches
     for job in searches:
-        found = study.threshold(replace(job, source="exact"))
+        found = overturning.threshold(replace(job, source="exact"))
         assert abs(found["shift"]) < 1e-6
     pulse = job.case.motion
     far = replace(job.case, motion=replace(pulse, amplitude=20.0 * pulse.amplitude))
-    assert math.isnan(study.threshold(replace(job, source="exact", case=far))["shift"])
+    assert math.isnan(overturning.threshold(replace(job, source="exact", case=far))["shift"])
 
 
 def test_squat_blocks_lift_off_and_slender_ones_do_not():
     squat, slender = (
-        study.needs(study.forces(Window(aspect=aspect, columns=9, rows=9, onsets=4.0)))
+        overturning.needs(overturning.forces(Window(aspect=aspect, columns=9, rows=9, onsets=4.0)))
         for aspect in (1.0, 4.0)
     )
     assert squat["lift_off"][0] > 0 == slender["lift_off"][0]
@@ -150,7 +150,7 @@ def test_squat_blocks_lift_off_and_slender_ones_do_not():
 @pytest.fixture(scope="module")
 def exact():
     """Return the rows of the exact solution on the quick planes."""
-    return pd.DataFrame(run(planes.jobs(("exact",), True), study.measure))
+    return pd.DataFrame(run(planes.jobs(("exact",), True), overturning.measure))
 
 
 def test_each_kind_of_wrong_outcome_on_planes_is_counted(exact):

@@ -16,15 +16,9 @@ from studies.drawing.stability import MARKS
 from studies.kit.run import lost_row, run
 from studies.kit.study import Study
 from studies.measures.energy import energy, growth
-from studies.measures.largest_step import (
-    FACTOR,
-    LARGEST_STEP,
-    SMALLEST_STEP,
-    contact_times,
-    largest_good,
-)
 from studies.measures.verdicts import Verdict, invalidity, judge
 from studies.sources.registry import resolve
+from studies.stability import FACTOR, LARGEST_STEP, SMALLEST_STEP, contact_times, largest_good
 
 CASE = Extreme(name="plain", group="test")
 EXACT = simulate(CASE.block, CASE.motion)
