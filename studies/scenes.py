@@ -271,7 +271,8 @@ def _lines(rows: pd.DataFrame, line: Callable[[pd.DataFrame], Row], *labels: str
     found: list[Row] = []
     for key, group in rows.groupby(keys, sort=False):
         found.append({**dict(zip(keys, key, strict=True)), **line(group)})
-    return pd.DataFrame(sorted(found, key=lambda each: order.index(each["source"])))
+    found.sort(key=lambda each: order.index(each["source"]))
+    return pd.DataFrame(found)
 
 
 def _errors(rows: pd.DataFrame) -> Row:
