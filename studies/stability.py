@@ -34,8 +34,6 @@ LIMIT_S, TRIED_S, ANSWER_S, RUN_S = 600.0, 540.0, 54.0, 60.0
 another setting may take, which the limits in steps keep far from that."""
 ANSWER_STEPS, REMEDY_STEPS, SEARCH_STEPS = 5_000_000, 2_000_000, 500_000
 """Steps that an answer, a remedy and a run of a search may take."""
-FINER, FINEST = 5e-4, 1e-4
-"""p dt of the remedy for steps that land on impacts, and for equal ones."""
 NOTHING = "none of those tried"
 GOOD = [verdict.value for verdict in ACCEPTED]
 LARGEST = ["largest_stable", "largest_accurate", "stable_over_contact", "accurate_over_contact"]
@@ -44,8 +42,6 @@ START, SMALLEST_STEP, LARGEST_STEP = 0.01, 1e-4, 1.0
 """p dt from which a search sets out, and between which it searches."""
 FACTOR, QUICK_FACTOR = 1.05, 1.3
 """Factor within which a largest step is found."""
-OWN_CONTACT = 0.01
-"""Time, in units of 1/p, of a contact that does not follow the step."""
 PROBLEMS = (
     Extreme(name="peak before an impact", group="steps", half_cycles=1, onsets=1.5),
     Extreme(name="peak after an impact", group="steps"),
@@ -90,7 +86,7 @@ def contact_times(case: Extreme, source: str) -> tuple[float, ...]:
     if not asked.stepping:
         return ()
     if source.endswith(":fixed") and takes_spring(asked):
-        return (math.nan, OWN_CONTACT / case.block.p)
+        return (math.nan, 0.01 / case.block.p)  # a contact that does not follow the step, too
     return (asked.used.contact_s if asked.engine else math.nan,)
 
 
@@ -216,7 +212,7 @@ def remedies(case: Extreme, source: str) -> Iterator[tuple[str, str, Row]]:
     if case.step_s is not None:
         yield "the preset's own step", source, better
     elif tuned:
-        step = FINEST if preset.stepping is Stepping.FIXED else FINER
+        step = 1e-4 if preset.stepping is Stepping.FIXED else 5e-4
         yield f"p dt {step:g}", source, {**options, "step": step}
     for other in engine.presets[1:] if preset is not engine.best else ():
         if other is not preset or better != options:

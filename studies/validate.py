@@ -53,8 +53,6 @@ if TYPE_CHECKING:
 CASES = {"": (500, 100), "halves": (300, 20), "published_steps": (500, 20)}
 TESTS = (100, 10)
 """Number of random cases, in full and quickly: for each form, and of those that test factors."""
-SHARE_S, FEWEST = 20.0, 50
-"""Time for a published step [s], and of how many cases it is asked, however long they take."""
 
 
 @Parameter(name="*")
@@ -166,7 +164,7 @@ def _at_published_steps(engines: Sequence[str], cases: int, options: Options) ->
         words = "with --published-steps it must be an installed engine, without a preset"
         raise BadInputError(f"--sources is {unknown[0]!r}; {words}")
     refuse_excess(f"--cases is {cases}", cases * CASE_BYTES)
-    drawn, share = list(islice(draw(options.seed), cases)), options.share or SHARE_S
+    drawn, share = list(islice(draw(options.seed), cases)), options.share or 20.0
     known = published.settings(PUBLISHED, engines)
     keeps = known["max_error"] <= max(TARGETS)
     tried = known[with_every_finer(keeps, known["engine"], known["preset"])]
@@ -175,7 +173,7 @@ def _at_published_steps(engines: Sequence[str], cases: int, options: Options) ->
         labels = {name: line[name] for name in SETTING}
         engine, preset, value = labels.values()
         settings = published.options_at(ENGINES[engine].preset(preset), value)
-        first = drawn[: max(FEWEST, int(share / line["wall_s"]))]
+        first = drawn[: max(50, int(share / line["wall_s"]))]
         found += [_job(labels, case, f"{engine}:{preset}", settings) for case in first]
     return found
 

@@ -52,8 +52,6 @@ COLUMNS = {
     "thresholds": (*EDGE, "x", "onsets", "source", "outcome", "shift", "runs", "message"),
 }
 """Columns of the tables of engines."""
-MODES = ("survives", "no_impact", "after_1", "after_2", "after_3", "after_more")
-"""Columns of the parts of a map, from the mode -1 on."""
 
 
 @Parameter(name="*")
@@ -357,7 +355,8 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     whole = areas["x"].nunique() * (window.onsets - LEAST_ONSETS)
     mode, part = areas["mode"].clip(-1, 4), (areas["high"] - areas["low"]) / whole
     parts = part.groupby([areas["model"], mode]).sum().unstack(fill_value=0)
-    parts = parts.rename(columns=dict(enumerate(MODES, -1))).reset_index()
+    modes = ("survives", "no_impact", "after_1", "after_2", "after_3", "after_more")
+    parts = parts.rename(columns=dict(enumerate(modes, -1))).reset_index()
     found = {f"Parts of the map by impacts before a block overturns, {window.title}": parts}
     if lines is not None:
         ours, cells = lines["cells"].isna(), lines.astype({"cells": "Int64"})
