@@ -325,10 +325,10 @@ def _at(table: pd.DataFrame, target: float) -> pd.DataFrame:
 
 def off(table: pd.DataFrame, name: str) -> pd.DataFrame:
     """Return how many cases are off at all settings of each preset, a column for each error."""
-    counts = {f"{target:g}": _at(table, target)[name] for target in TARGETS}
-    settings = _at(table, TARGETS[0]).assign(**counts)
-    uses = settings.groupby(["engine", "preset"], sort=False)
-    return uses[["random_cases", *counts]].sum().reset_index()
+    found = pd.concat([_at(table, target).assign(target=f"{target:g}") for target in TARGETS])
+    uses = ["engine", "preset", "random_cases"]
+    by_use = found.groupby([*uses[:2], "target"], sort=False)[[uses[2], name]].sum().reset_index()
+    return by_use.pivot_table(name, uses, "target", sort=False).astype(int).reset_index()
 
 
 def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
