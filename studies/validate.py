@@ -191,8 +191,6 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     return {"errors": errors, "drawn": left, "bands": bands(errors)}
 
 
-
-
 def bands(errors: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each source and band of the cases that survive in the exact solution."""
     rocked = errors[errors["exact_outcome"] == "rocked"]
