@@ -148,8 +148,7 @@ def side_by_side(
         window = window_of(block, motion, duration)
         refuse_endless(block, window, duration=duration, dt=dt)
         case = Question(system=block, motion=motion, start=start, duration=window)
-        yours = Yours(friction=friction, dt=dt)
-        rows = compare(case, sources, yours=yours, estimate=estimate)
+        rows = compare(case, sources, Yours(friction=friction, dt=dt), estimate=estimate)
     except BadInputError as error:
         raise ValueError(str(error).removeprefix("--")) from None
     return pd.DataFrame(records(rows))

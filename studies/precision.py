@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import functools
-import importlib
 import math
 import os
 import pickle
@@ -16,6 +14,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from functools import partial
 from itertools import product
 from pathlib import Path
+from pkgutil import resolve_name
 from timeit import repeat
 from typing import TYPE_CHECKING, Any
 
@@ -27,14 +26,7 @@ from analytic.response import Outcome, Response
 from engines import ENGINES
 from engines.declaration import Engine
 from engines.run.drive import build
-from studies.cases.paper import (
-    HISTORIES,
-    SWEEPS,
-    Case,
-    HistoryCase,
-    free_rocking_window,
-    sweep_cases,
-)
+from studies.cases.paper import HISTORIES, SWEEPS, Case, free_rocking_window, sweep_cases
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.options import Running
@@ -61,10 +53,6 @@ if TYPE_CHECKING:
 
 ALONG, SHARES, SCENES, REFERENCE = "precision", "shares", "scenes", "reference"
 """The tables whose rows are measured."""
-BUDGETS_S = {"full": (0.5, 5.0), "quick": (0.02, 0.15)}
-"""Time [s] spent at most on timing a case with one setting, and on timing a step or a scene."""
-RUNS = 30
-"""Of what the exact solution is timed with in a scene, of which the shortest counts."""
 WORLDS = 20
 """Scenes built at once to see what memory one takes."""
 GRID = np.linspace(0.0, 1.0, 1001)
@@ -77,8 +65,6 @@ FINE_TARGETS = (*TARGETS[1:], 1e-6)
 """Errors that are asked of every method."""
 TOLERANCES = tuple(10.0**-n for n in range(2, 13))
 STEPS = (0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)
-ENGINE_STEPS = (0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)
-ITERATIONS = (2.0, 5.0, 10.0, 50.0, 200.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,10 +114,11 @@ def methods_of(sources: Iterable[str]) -> dict[str, Method]:
             continue
         for use in [ENGINES[engine].preset(preset)] if preset else uses_of(engine):
             source, knob = f"{engine}:{use.name}", use.accuracy_knob
-            setting, values = knob or ("step", ENGINE_STEPS)
+            setting, values = knob or ("step", STEPS[1:-1])
             found[f"{engine} {use.name}"] = Method(source, setting, values, own=knob is not None)
             if use.name == "fixed" and use.takes(iterations=1):
-                method = Method(source, "iterations", ITERATIONS, {"step": 1e-3}, own=True)
+                values = (2.0, 5.0, 10.0, 50.0, 200.0)
+                method = Method(source, "iterations", values, {"step": 1e-3}, own=True)
                 iterated[f"{engine} fixed, iterations"] = method
     return found | iterated
 
@@ -175,16 +162,18 @@ def references() -> dict[str, Callable[[], object]]:
 def jobs(sources: Iterable[str], quick: bool) -> list[Job]:
     """Return a job for each method, setting and case; then those of steps and of scenes."""
     names = tuple(sources)
-    brief_s, long_s = BUDGETS_S["quick" if quick else "full"]
+    # spent at most on timing a case with one setting, and on timing a step or a scene
+    brief_s, long_s = (0.02, 0.15) if quick else (0.5, 5.0)
     found, sets = [], chosen_cases(quick)
     for name, method in methods_of(names).items():
         # quick: every other setting, without the two dearest
         values = method.values[: max(len(method.values) - 2, 1) : 2] if quick else method.values
         for value, (kind, cases) in product(values, sets.items()):
             for case in cases:
-                window = free_rocking_window(case.block, case.motion)
+                block, motion = case.block, case.motion
+                window = free_rocking_window(block, motion)
                 times = np.linspace(0.0, window, SAMPLES)
-                asked = question(case, duration=window, times=times)
+                asked = Question(system=block, motion=motion, duration=window, times=times)
                 labels = {"table": ALONG, "method": name, "value": value, "set": kind}
                 labels |= {**asdict(case), "budget_s": brief_s}
                 options = method.options_at(value)
@@ -198,15 +187,11 @@ def jobs(sources: Iterable[str], quick: bool) -> list[Job]:
     ]
     if "exact" in names:
         alone += [{"table": REFERENCE, "scene": name} for name in references()]
+    asked = Question(system=CASE.block, motion=CASE.motion)
     return found + [
-        Job(labels={**labels, "budget_s": long_s}, case=question(CASE), source=source)
-        for source, labels in ((it.get("engine", "exact"), it) for it in alone)
+        Job(labels={**it, "budget_s": long_s}, case=asked, source=it.get("engine", "exact"))
+        for it in alone
     ]
-
-
-def question(case: Case | HistoryCase, **observed: Any) -> Question:
-    """Return what a case asks."""
-    return Question(system=case.block, motion=case.motion, **observed)
 
 
 def measure(job: Job) -> Row:
@@ -220,7 +205,7 @@ def along(job: Job) -> Row:
 
     A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
     """
-    recorded, block = ask(job), job.case.system
+    recorded, block, motion = ask(job), job.case.system, job.case.motion
     assert isinstance(block, RigidBlock)
     plain = replace(job, case=replace(job.case, duration=None, times=None))
 
@@ -235,11 +220,9 @@ def along(job: Job) -> Row:
     if best.outcome is Outcome.FAILED:
         found = best
     elif recorded.outcome is not Outcome.FAILED:
-        changed = {
-            name: getattr(best, name) for name in ("outcome", "peak_ratio", "steps", "wall_s")
-        }
-        found = replace(recorded, **changed)
-        right = simulate(block, job.case.motion, duration=job.case.duration)
+        timed_alone = ("outcome", "peak_ratio", "steps", "wall_s")
+        found = replace(recorded, **{name: getattr(best, name) for name in timed_alone})
+        right = simulate(block, motion, duration=job.case.duration)
         late, exact = impact_error(recorded, right, block.p), right.peak_ratio
     return {
         **summary(found),
@@ -247,7 +230,7 @@ def along(job: Job) -> Row:
         "runs": runs,
         "error": abs(found.peak_ratio / exact - 1.0),
         "impact_error": late,
-        "energy_drift": energy_drift(block, job.case.motion, recorded),
+        "energy_drift": energy_drift(block, motion, recorded),
     }
 
 
@@ -291,9 +274,8 @@ def share(job: Job) -> Row:
 @contextmanager
 def clock(engine: str) -> Iterator[list[float]]:
     """Put a clock around an engine's own step while the context lasts; yield its times [s]."""
-    library, _, path = ENGINES[engine].own_step.partition(":")
-    *owners, name = path.split(".")
-    owner: Any = functools.reduce(getattr, owners, importlib.import_module(library))
+    place, _, name = ENGINES[engine].own_step.replace(":", ".").rpartition(".")
+    owner: Any = resolve_name(place)
     step, spent = getattr(owner, name), []
 
     def timed(*arguments: Any, **named: Any) -> Any:
@@ -341,13 +323,9 @@ def memory_of(job: Job) -> float:
     """Return the memory [KiB] of a built scene, by a process whose memory nothing has used."""
     code = "import pickle, sys; from studies.precision import grown; "
     code += "print(grown(pickle.load(sys.stdin.buffer)))"
-    path = os.pathsep.join(filter(None, sys.path))
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        input=pickle.dumps(job),
-        env={**os.environ, "PYTHONPATH": path},
-        capture_output=True,
-    )
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    line = [sys.executable, "-c", code]
+    done = subprocess.run(line, input=pickle.dumps(job), env=env, capture_output=True)
     return float(done.stdout.split()[-1]) if done.returncode == 0 else math.nan
 
 
@@ -369,15 +347,16 @@ def grown(job: Job) -> float:
 
 def reference(job: Job) -> Row:
     """Time what the exact solution leaves out: one response, or the whole sweep."""
-    wall_s = min(repeat(references()[str(job.labels["scene"])], number=1, repeat=RUNS))
+    wall_s = min(repeat(references()[str(job.labels["scene"])], number=1, repeat=30))
     return {**summary(ask(job)), "wall_s": wall_s}
 
 
+CASES = [item.name for item in fields(Case)]
 COLUMNS = {
     ALONG: [
-        *("method", "value", "set", "figure", "pulse", "excess_g", "aspect", "width_m"),
-        *("omega_over_p", "budget_s", "source", "outcome", "peak_ratio", "impacts", "steps"),
-        *("wall_s", "message", "setup_s", "runs", "error", "impact_error", "energy_drift"),
+        *("method", "value", "set", *CASES, "budget_s", "source", "outcome", "peak_ratio"),
+        *("impacts", "steps", "wall_s", "message", "setup_s", "runs"),
+        *("error", "impact_error", "energy_drift"),
     ],
     SHARES: ["engine", "step_s", "engine_s"],
     SCENES: [
@@ -386,8 +365,6 @@ COLUMNS = {
     ],
     REFERENCE: ["scene", "wall_s"],
 }
-WHOLE = ("figure", "aspect", "runs")
-"""Columns that not every table has, of whole numbers."""
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
@@ -395,7 +372,8 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     found = {}
     for name, columns in COLUMNS.items():
         table = rows[rows["table"] == name].reindex(columns=columns)
-        found[name] = table.astype({column: int for column in WHOLE if column in columns})
+        whole = {"figure", "aspect", "runs"}.intersection(columns)
+        found[name] = table.astype(dict.fromkeys(whole, int))
     return {**found, "work-precision": work_precision(found[ALONG])}
 
 
@@ -421,9 +399,6 @@ def work_precision(rows: pd.DataFrame) -> pd.DataFrame:
     ).reset_index()
     table["real_time_factor"] = table.pop("pulse_s") / table["wall_s"]
     return table
-
-
-CASES = [item.name for item in fields(Case)]
 
 
 def engines_of(table: pd.DataFrame) -> pd.DataFrame:

@@ -53,10 +53,6 @@ EXTREME = "stability/stability.csv"
 """Cases that a setting is not chosen by."""
 TABLES = (known.LADDER, *known.PAPER, EXTREME)
 """Tables without which there is no advice."""
-FRICTION = 0.8
-ONE_ENGINE = "Of one --engine alone its settings are written out, too, in the library's words."
-UNCOUNTED = ("unseen", "invalid")
-"""Verdicts on extreme cases whose rocking is too small to be seen, or without a reference."""
 NONE_FOUND: Row = {
     **dict.fromkeys(("value", "dt_s", "wall_s", "max_error"), math.nan),
     **dict.fromkeys(("runs", "cases", *known.COUNTS, "extreme_cases", "extreme_off"), 0),
@@ -117,7 +113,7 @@ def command(
     block, names = block_of(width, height), seen.TABLES if symptoms else TABLES
     folder = known.published_in(published, names)
     asked = engines or tuple(known.along_steps(folder, list(ENGINES))["engine"].unique())
-    at = friction if friction is not None else FRICTION
+    at = 0.8 if friction is None else friction
     with as_bad_input():
         if symptoms:
             tables = {"symptoms": seen.find(folder, asked, block, dt, friction)}
@@ -128,7 +124,8 @@ def command(
         else:
             tables = {"step": find_errors(folder, asked, block, dt)}
             written = write(tables["step"], block, at)
-        details = list(written) if len(asked) == 1 else [ONE_ENGINE]
+        alone = "Of one --engine alone its settings are written out, too, in the library's words."
+        details = list(written) if len(asked) == 1 else [alone]
     if out is None:
         print(as_text(finding(tables), shown(tables)))
     else:
@@ -154,6 +151,8 @@ def find(
     """
     settings, runs = known.settings(published, engines), known.random_runs(published)
     extreme = read_table(published / EXTREME)
+    # neither rocking that is too small to be seen, nor what has no reference
+    extreme = extreme[~extreme["verdict"].isin(("unseen", "invalid"))]
     rows: list[Row] = []
     for target in targets:
         table = known.counted(settings, runs, target)
@@ -170,7 +169,9 @@ def find(
             rows[-1] |= {**{name: best[name] for name in row if name in best}, "dt_s": at}
             if np.array_equal(value, known.declared_value(preset), equal_nan=True):
                 source = engine if preset is ENGINES[engine].best else f"{engine}:{preset.name}"
-                rows[-1] |= count_extreme(extreme[extreme["source"] == source], target)
+                told = extreme[extreme["source"] == source]
+                off = (told["outcome"] != told["exact_outcome"]) | (told["error"].abs() > target)
+                rows[-1] |= {"extreme_cases": len(told), "extreme_off": int(off.sum())}
     lines = pd.DataFrame(rows)
     least = lines.groupby(USE[:2])["wall_s"].transform("min")
     return lines.assign(cheapest=lines["wall_s"] == least)
@@ -179,13 +180,6 @@ def find(
 def keeps(settings: pd.DataFrame, target: float) -> pd.Series[bool]:
     """Return which settings keep an error by themselves, whatever finer ones do."""
     return (settings["max_error"] <= target) & (settings["random_calm_off"] == 0)
-
-
-def count_extreme(rows: pd.DataFrame, target: float) -> dict[str, int]:
-    """Count extreme cases, and those of another outcome or a larger error, where one can tell."""
-    rows = rows[~rows["verdict"].isin(UNCOUNTED)]
-    off = (rows["outcome"] != rows["exact_outcome"]) | (rows["error"].abs() > target)
-    return {"extreme_cases": len(rows), "extreme_off": int(off.sum())}
 
 
 def why(settings: pd.DataFrame, preset: Preset, target: float) -> str:
@@ -343,25 +337,22 @@ def write(lines: pd.DataFrame, block: RigidBlock, friction: float) -> Iterator[s
     ValueError
         If the engine does not take such a friction.
     """
-    found = lines[lines["message"] == ""] if "message" in lines else lines
+    given_step = "message" not in lines
+    found = lines if given_step else lines[lines["message"] == ""]
     for _, line in found.drop_duplicates(["engine", "preset", "value"]).iterrows():
-        yield _written(line, block, friction, by_formula="message" not in lines)
-
-
-def _written(line: pd.Series[Any], block: RigidBlock, friction: float, by_formula: bool) -> str:
-    preset, value, dt_s = preset_of(line), float(line["value"]), float(line["dt_s"])
-    here = "" if math.isnan(dt_s) else f", DT = {dt_s:.6g} s"
-    title = f"{ENGINES[line['engine']].title}, {preset.title}"
-    head = f"{title}, {name_of(preset, value)}{here}, friction {friction:g}"
-    at = partial(in_library_words, line, block, friction)
-    text = formulas = at(value)
-    if by_formula:
-        try:
-            formulas = by_step(lambda step_s: at(step_s * block.p))
-        except ValueError:  # a number that follows the step otherwise than as a power of it
-            head = f"{head}; at another step other numbers"
-    parts = [formulas] if formulas == text else [formulas, text]
-    return f"{head}\n" + "\nthat is\n".join(indent(each, "  ") for each in parts)
+        preset, value, dt_s = preset_of(line), float(line["value"]), float(line["dt_s"])
+        here = "" if math.isnan(dt_s) else f", DT = {dt_s:.6g} s"
+        title = f"{ENGINES[line['engine']].title}, {preset.title}"
+        head = f"{title}, {name_of(preset, value)}{here}, friction {friction:g}"
+        at = partial(in_library_words, line, block, friction)
+        parts = [at(value)]
+        if given_step:
+            try:
+                parts.insert(0, by_step(lambda step_s: at(step_s * block.p)))  # noqa: B023
+            except ValueError:  # a number that follows the step otherwise than as a power of it
+                head = f"{head}; at another step other numbers"
+        texts = [indent(each, "  ") for each in dict.fromkeys(parts)]
+        yield f"{head}\n" + "\nthat is\n".join(texts)
 
 
 def in_library_words(line: pd.Series[Any], block: RigidBlock, friction: float, value: float) -> str:

@@ -62,8 +62,7 @@ BOUNCE = Symptom(
 SYMPTOMS = (*MEASURED, UNMOVED, HULL, STEP, BOUNCE)
 """All of them; the last four compare two settings."""
 
-DEFAULTS, QUOTED_E = "the library's defaults", 0.6
-"""The second is the coefficient of restitution for which BOUNCES quotes settings."""
+DEFAULTS = "the library's defaults"
 HELPS = 0.5
 """A setting helps if it leaves no more than this part of what there is by default, both at the
 p dt of all and at the library's own step; of peaks, if it lowers the median error, too."""
@@ -71,11 +70,6 @@ NUMBERS = ("before", "after", "tuned", "landing", "before_own", "after_own")
 """Columns of sizes: by default, with one setting, and with all; the last two at the own step."""
 MENDING = ("setting", "formula", "dt_s", "literal", "after", "after_own")
 """Columns of the setting that helps."""
-COLUMNS = (
-    *("symptom", "engine", "measure", "shown_by", "before", "setting", "formula", "dt_s"),
-    *("literal", *NUMBERS[1:], "asked_in", "command"),
-)
-"""Columns of symptoms.csv."""
 TEXTS = ("shown_by", "setting", "formula", "literal", "asked_in", "command")
 
 
@@ -107,7 +101,9 @@ def find(
         asked = f"--engines is {' '.join(engines)!r}"
         raise BadInputError(f"{asked}; it must name one in {VARIANTS}")
     names = [symptom.name for symptom in SYMPTOMS]
-    return pd.DataFrame(rows, columns=COLUMNS).sort_values(
+    columns = ["symptom", "engine", "measure", "shown_by", "before", "setting", "formula", "dt_s"]
+    columns += ["literal", *NUMBERS[1:], "asked_in", "command"]
+    return pd.DataFrame(rows, columns=columns).sort_values(
         "symptom", key=lambda column: column.map(names.index), ignore_index=True, kind="stable"
     )
 
@@ -222,7 +218,8 @@ def _bouncing(ways: pd.DataFrame, dt_s: float) -> Row:
     sizes = [float(way["off_over_all"]) for way in (first, best)]
     row = _pair(f'"{first["way"]}"', sizes[0], f'"{best["way"]}"', sizes[1], dt_s=dt_s)
     lines = {"formula": best["literal"], "literal": at_step(best["literal"], dt_s)}
-    return row | {name: f"for {QUOTED_E:g}: {text}" for name, text in lines.items()}
+    # the study quotes settings for a coefficient of 0.6
+    return row | {name: f"for 0.6: {text}" for name, text in lines.items()}
 
 
 def patch(
@@ -241,9 +238,9 @@ def patch(
     script, usual = ENGINES[engine].script, ENGINES[engine].preset(DEFAULT)
     if script is None:
         return ""
-    asked = (DEFAULT, factor, level)
     known = {(each.preset, each.factor, each.level): each.settings for each in variants(engine)}
-    scenes = [usual.posed(_scene(block, given, friction)) for given in ({}, known[asked])]
+    changed = known[DEFAULT, factor, level]
+    scenes = [usual.posed(_scene(block, given, friction)) for given in ({}, changed)]
     before, after = (_files(script(each, usual.chosen(each), dt_s)) for each in scenes)
     return "\n".join(line for name in after for line in _places(name, before[name], after[name]))
 

@@ -31,10 +31,6 @@ from studies.kit.scene_options import Excitation, Height, Standing, Width, refus
 from studies.sources.registry import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", *core_sources())
-OF_A_SLIDE = ("exact", *core_sources())
-"""By default asked of a block that slides, which has no linearization."""
-SAMPLES = 1501
-"""Of a history that is drawn."""
 
 
 def command(
@@ -75,7 +71,8 @@ def command(
     """
     if standing.scene == "slide":
         refuse_given({"plot": plot}, "only where something rocks")
-        sources = OF_A_SLIDE if sources == DEFAULT_SOURCES else sources
+        if sources == DEFAULT_SOURCES:  # a block that slides has no linearization
+            sources = ("exact", *core_sources())
     refuse_both(dt=yours.dt, step=effort.step)
     effort.refuse_idle(sources)
     words = "a block requires its full width and height [m]"
@@ -85,13 +82,18 @@ def command(
     motion, start = excitation.pose(system)
     window = window_of(system, motion, duration)
     refuse_endless(system, window, duration=duration, step=effort.step, dt=yours.dt)
-    times = np.linspace(0.0, window, SAMPLES) if plot else None
+    times = np.linspace(0.0, window, 1501) if plot else None
     case = Question(system=system, motion=motion, start=start, duration=window, times=times)
     place = place_of(computing, at_once=True)
-    rows = compare(case, sources, place=place, effort=effort, yours=yours, estimate=estimate)
+    rows = compare(case, sources, yours, place=place, effort=effort, estimate=estimate)
     note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
     if json:
-        print(as_lines(records(rows, note)))
+        for record in records(rows, note):
+            finite = {
+                name: None if isinstance(value, float) and not math.isfinite(value) else value
+                for name, value in record.items()
+            }
+            print(json_text.dumps(finite, allow_nan=False))
     else:
         edge = near_edge(case, rows[0]["exact"])
         print(table_text(case, rows, note, edge, degrees=excitation.degrees))
@@ -100,15 +102,6 @@ def command(
     for line in unusual(width, height, excitation, motion):
         say(f"note: {line}")
     return exit_code(rows)
-
-
-def as_lines(rows: Sequence[Row]) -> str:
-    """Return one JSON object a line; a number that is not finite is null."""
-    finite = (
-        {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}
-        for row in rows
-    )
-    return "\n".join(json_text.dumps(row, allow_nan=False) for row in finite)
 
 
 def draw(case: Question, rows: Sequence[Row], path: Path) -> None:

@@ -25,8 +25,8 @@ from studies.sources.registry import DEFAULT_EFFORT, Effort
 if TYPE_CHECKING:
     from studies.kit.options import Yours  # it loads the parser, which workers do without
 
-EDGE, TIMED_IMPACTS = 0.01, 5
-"""Part of the amplitude that should not decide who overturns; first impacts that are compared."""
+EDGE = 0.01
+"""Part of the amplitude that should not decide who overturns."""
 
 
 def window_of(system: System, motion: Motion, duration: float | None) -> float:
@@ -40,10 +40,10 @@ def window_of(system: System, motion: Motion, duration: float | None) -> float:
 def compare(
     case: Question,
     sources: Sequence[str],
+    yours: Yours,
     *,
     place: Place = here,
     effort: Effort = DEFAULT_EFFORT,
-    yours: Yours | None = None,
     estimate: bool = False,
 ) -> list[Row]:
     """Ask every source, and the exact solution besides; return a row for each.
@@ -52,7 +52,7 @@ def compare(
     `velocity_ratio` is the median, `impact_error` the largest of the first impacts in units of 1/p;
     kappa and sensitivity are of the exact peak; `estimate` needs every engine at half its step.
     """
-    own = yours.options(sources, case.system) if yours else {}
+    own = yours.options(sources, case.system)
     jobs = [
         Job(labels={}, case=case, source=name, options=effort.options(name) | own.get(name, {}))
         for name in dict.fromkeys(["exact", *sources])
@@ -68,9 +68,9 @@ def compare(
     for name, row in rows.items():
         row |= {**_beside(row["response"], exact, case.system.p), **known, "exact": exact}
         if estimate:
-            own_steps = effort.own and (yours is None or yours.dt is None)
+            own_steps = effort.own and yours.dt is None
             row |= _estimated(row, halves.get(name), case.system, own_steps)
-    said = (rows["exact"]["message"], *_faults(case, exact, yours.friction if yours else None))
+    said = (rows["exact"]["message"], *_faults(case, exact, yours.friction))
     rows["exact"]["message"] = "; ".join(filter(None, said))
     return [rows[name] for name in sources]
 
@@ -88,7 +88,7 @@ def _beside(response: Response, exact: Response, p: float) -> dict[str, float]:
     elif response.outcome is Outcome.ROCKED is exact.outcome and exact.peak_ratio > 0.0:
         error = response.peak_ratio / exact.peak_ratio - 1.0
     ratios = [impact.ratio for impact in response.impacts if impact.velocity_before]
-    wanted = [impact.time for impact in exact.impacts[:TIMED_IMPACTS]]
+    wanted = [impact.time for impact in exact.impacts[:5]]
     found = [impact.time for impact in response.impacts[: len(wanted)]]
     if wanted and len(found) == len(wanted):
         late = max(abs(one - other) for one, other in zip(found, wanted, strict=True))

@@ -22,10 +22,6 @@ from studies.measures.halving import NO_BOUND
 
 OF_A_FRAME = {"parting": "parting/θcr", "tilt": "beam/θcr", "drift_m": "drift [m]"}
 """Observable of a frame -> its column."""
-PERHAPS = ("slip/B", "lag [m]")
-"""Columns that are left out where no source has a number."""
-SEEN_M = 1e-6
-"""Of a floor's lag, what is shown [m]."""
 UNKNOWN = "unknown: there is no exact solution to tell"
 
 
@@ -165,7 +161,7 @@ def _cells(system: System, row: Row, degrees: bool) -> dict[str, str]:
         "late·p": scientific(row["impact_error"]),
         "ratio": _number(row["velocity_ratio"], ".6f"),
         "slip/B": scientific(answer.slip_m / system.width),
-        "lag [m]": scientific(lag if lag > SEEN_M else math.nan),
+        "lag [m]": scientific(lag if lag > 1e-6 else math.nan),  # less cannot be seen
         **{title: scientific(answer.observables.get(name, math.nan)) for name, title in observed},
         **effort,
     }
@@ -189,9 +185,10 @@ def _number(value: float, form: str) -> str:
 
 
 def _aligned(rows: Sequence[Mapping[str, str]]) -> str:
-    """Return the rows under their titles, without the columns PERHAPS where nothing is in them."""
+    """Return the rows under their titles, two columns only where some source has a number."""
     columns = [[title, *(row[title] for row in rows)] for title in rows[0]]
-    kept = [each for each in columns if each[0] not in PERHAPS or set(each[1:]) != {"-"}]
+    perhaps = ("slip/B", "lag [m]")
+    kept = [each for each in columns if each[0] not in perhaps or set(each[1:]) != {"-"}]
     widths = [max(map(len, column)) for column in kept]
     lines = (zip(line, widths, strict=True) for line in zip(*kept, strict=True))
     return "\n".join(" ".join(text.rjust(width) for text, width in line) for line in lines)

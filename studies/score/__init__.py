@@ -26,14 +26,8 @@ from engines.registry import OWN, UnloadableError, named
 from engines.scene import perhaps
 from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import (
-    Out,
-    Place,
-    as_bad_input,
-    check_writable,
-    refuse_repeats,
-    several_or_none,
-)
+from studies.kit import arguments
+from studies.kit.arguments import Out, Place
 from studies.kit.foreign import apart
 from studies.kit.identity import version_of
 from studies.kit.jobs import Job, Question, Row, answer
@@ -58,8 +52,6 @@ SWEEP, STEPS, EXTREMES, MOMENTS, SCENES = (
 )
 FURTHER = {"score-frame": "frame", "score-slide": "slide"}
 """Table -> its scene."""
-QUICK_EVERY = 11
-"""Of the cases of a figure a quick score asks every so-manieth; no divisor of a panel's 40."""
 SCHEMA = 1
 """Version of the form that `result_of` gives a result."""
 NOISE = 1e-6
@@ -74,16 +66,13 @@ MEASURES = (*LEAST.values(), *MOST.values())
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return the jobs of the tables; of an engine without a preset those of all that it has."""
-    uses = [
-        use
-        for name in sources
-        for use in (
-            [name] if ":" in name else [f"{name}:{own}" for own in presets_of(resolve(name))]
-        )
-    ]
+    uses = list[str]()
+    for name in sources:
+        all_of_it = [f"{name}:{preset}" for preset in presets_of(resolve(name))]
+        uses += [name] if ":" in name else all_of_it
     swept = sweep.jobs(uses, quick, sweep.Options(figure=(6, 8) if quick else (6, 7, 8, 9)))
-    if quick:
-        swept = [job for number, job in enumerate(swept) if number // len(uses) % QUICK_EVERY == 0]
+    if quick:  # every 11th case of a figure: that divides no panel's 40
+        swept = [job for number, job in enumerate(swept) if number // len(uses) % 11 == 0]
     varied = [use for use in uses if preset_of(use) != AT_REST]
     along = [job for job in precision.jobs(varied, quick) if job.labels["table"] == precision.ALONG]
     flight = Question(system=probes.BLOCK, motion=probes.UNFELT)
@@ -114,8 +103,6 @@ def measure(job: Job) -> Row:
     return of[job.labels["part"]](job)
 
 
-WHOLE = ("figure", "aspect", "runs", "impacts", "steps")
-"""Columns of whole numbers that not every table has."""
 KNOWN = {
     SWEEP: ("peak_ratio",),
     STEPS: ("peak_ratio", "error", "impact_error", "energy_drift"),
@@ -135,8 +122,9 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     for name, scene in FURTHER.items():
         if len(held := scenes.built(tables[scene])):
             found[name] = held
+    whole = {"figure", "aspect", "runs", "impacts", "steps"}
     return {
-        name: table.astype({it: int for it in WHOLE if it in table})
+        name: table.astype(dict.fromkeys(whole.intersection(table), int))
         for name, table in found.items()
     }
 
@@ -240,7 +228,7 @@ def command(
     *,
     out: Out = Path("score"),
     quick: bool = False,
-    require: Annotated[tuple[str, ...] | None, several_or_none] = None,
+    require: Annotated[tuple[str, ...] | None, arguments.several_or_none] = None,
     json: Place | None = None,
     against: Place | None = None,
     running: Running = STUDY.running,
@@ -269,11 +257,12 @@ def command(
     # what cannot be held against it is refused now, and not after the last run
     requirements = [required(text, declared) for text in require or ()]
     if require is not None:
-        refuse_repeats("--require", [f"{preset}:{what}" for preset, what, _ in requirements])
+        asked = [f"{preset}:{what}" for preset, what, _ in requirements]
+        arguments.refuse_repeats("--require", asked)
     earlier = against and read(against, declared)
     published()
     if json:
-        check_writable("--json", json)
+        arguments.check_writable("--json", json)
     if declared.name not in OWN:
         with suppress(UnloadableError):  # its cases will say so
             if problem := apart(probes.problem_of, f"{declared.name}:{declared.best.name}"):
@@ -296,7 +285,7 @@ def command(
 def known(engine: str) -> str:
     """Return an engine by its name, with its preset where that is named; make a place's known."""
     if engine.partition(":")[0] in ENGINES:
-        with as_bad_input("ENGINE: "):
+        with arguments.as_bad_input("ENGINE: "):
             scored(engine)
         return engine
     if ":" not in engine:
@@ -317,12 +306,8 @@ def scored(source: str) -> Engine:
     return replace(engine, presets=(engine.preset(preset),)) if colon else engine
 
 
-Requirement = tuple[str, str, float]
-"""A preset, one of MEASURES, and its bound: a number of cases, or a relative error of the peak."""
-
-
-def required(text: str, engine: Engine) -> Requirement:
-    """Read a requirement, MEASURE=NUMBER or PRESET:MEASURE=NUMBER; the best preset is meant."""
+def required(text: str, engine: Engine) -> tuple[str, str, float]:
+    """Read [PRESET:]MEASURE=NUMBER: the preset, by default the best, the measure, and its bound."""
     name, _, number = text.partition("=")
     preset, colon, measured = name.rpartition(":")
     presets = [use.name for use in engine.presets]
@@ -337,7 +322,7 @@ def required(text: str, engine: Engine) -> Requirement:
     return preset or engine.best.name, measured, bound
 
 
-def holds(requirement: Requirement, result: Mapping[str, Any]) -> tuple[bool, str]:
+def holds(requirement: tuple[str, str, float], result: Mapping[str, Any]) -> tuple[bool, str]:
     """Return whether a result holds a requirement, and a line of what was required and found."""
     preset, measured, bound = requirement
     found = result["presets"][preset][measured]

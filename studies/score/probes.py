@@ -10,6 +10,7 @@ misses the exact one by a second order of the step, unless inertia, size or grav
 from __future__ import annotations
 
 import math
+from contextlib import closing
 from typing import cast
 
 import numpy as np
@@ -134,12 +135,9 @@ def measure_moment(job: Job) -> Row:
 
 def _measured(source: Source) -> tuple[dict[str, float], str]:
     pulls = np.array([*[PULL] * THROWN, *[0.0] * ALONE, -PULL, *[0.0] * AFTER]) * BLOCK.gravity
-    world = world_of(source, FLIGHT_STEP)
-    try:
+    with closing(world_of(source, FLIGHT_STEP)) as world:
         declared = world.moment.value
         heights = take(world, FLIGHT_STEP, pulls, theta=False)
-    finally:
-        world.close()
     before, within, after = np.diff(heights)[-AFTER - 2 :][[0, 1, -1]]
     gain = (after - before) / (-PULL * BLOCK.gravity * (FLIGHT_STEP / BLOCK.p) ** 2)
     if not 0.5 < gain < 2.0:
@@ -156,11 +154,8 @@ def turn_error(source: Source, step: float) -> float:
     times = np.array([0.0, 0.5, 1.0]) * RELEASED / BLOCK.p
     exact = simulate(BLOCK, Still(), start=start, times=times, duration=times[-1]).history
     assert exact is not None
-    world = world_of(source, step, start)
-    try:
+    with closing(world_of(source, step, start)) as world:
         thetas = take(world, step, weight(step))
-    finally:
-        world.close()
     return float(thetas[[0, len(thetas) // 2, -1]] @ WEIGHTS / (exact.theta @ WEIGHTS) - 1.0)
 
 
