@@ -1,4 +1,4 @@
-"""A comparison: in JSON, as a table, from Python; its notes on edges, friction and estimates."""
+"""A comparison: in JSON, as a table, from Python; of a frame and a slide; its notes."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from commanding import CASE, compared, python, refused
 from given import BLOCK, PULSE
 
 import studies
-from analytic import SinePulse, Still, simulate
+from analytic import RockingFrame, SinePulse, SlidingBlock, Still, simulate
 from engines import ENGINES
 from studies import respond, side_by_side
 from studies.__main__ import run
@@ -28,10 +28,10 @@ WINDOW = PULSE.duration + 8.0 / BLOCK.p
 NEEDED = simulate(BLOCK, PULSE).friction_needed
 
 
-def text_of(capsys, *options):
+def text_of(capsys, *options, code=0):
     """Run a comparison and return its text."""
     capsys.readouterr()
-    assert run(["compare", *map(str, options)]) == 0
+    assert run(["compare", *map(str, options)]) == code
     return capsys.readouterr().out
 
 
@@ -139,20 +139,103 @@ def test_half_cycles_replace_the_pulse(capsys):
     assert two == full != three
 
 
-def test_a_slide_has_its_slips_and_a_frame_its_observables(capsys):
-    pulse = ["--amplitude", "0.4", "--omega", "6.2832"]
-    sizes = ["--width", "1", "--height", "0.5", "--scene", "slide", "--friction", "0.2"]
-    _, rows = compared(capsys, *sizes, *pulse)
-    assert {*rows} == {"exact", "pybullet", "mujoco"}
+SHAKEN = [*CASE[:4], "--amplitude", "0.5", "--omega", "9"]
+OF_A_FRAME = ["--scene", "frame", "--columns", "2", "--load", "2"]
+OF_A_SLIDE = ["--scene", "slide", "--friction", "0.2"]
+FRAME = RockingFrame(width=0.5, height=1.5, columns=2, load=2.0)
+STRONGER = SinePulse.in_g(0.5, omega=9.0, half_cycles=2)
+
+
+def test_a_slide_is_compared(capsys):
+    code, rows = compared(capsys, "--width", 1, "--height", 0.5, *OF_A_SLIDE, *CASE[4:])
+    assert (code, {*rows}) == (0, {"exact", "pybullet", "mujoco"})
     exact = rows["exact"]["slips"]
     for row in rows.values():
         off = max(abs(a - b) for a, b in zip(row["slips"], exact, strict=True))
         assert row["error"] == pytest.approx(off / max(map(abs, exact)), rel=1e-12)
         assert row["error"] < 1e-3 and row["kappa"] is None
-    frame = [*CASE[:4], "--scene", "frame", "--load", "2", *CASE[4:]]
-    _, rows = compared(capsys, *frame, "--sources", "exact", "mujoco:fixed")
-    assert {"parting", "tilt", "drift_m"} <= {*rows["mujoco:fixed"]}
-    assert abs(rows["mujoco:fixed"]["error"]) < 0.01
+    code, rows = compared(capsys, *SHAKEN, *OF_A_SLIDE, "--sources", "exact", "pymunk")
+    exact, found = rows.values()
+    box = SlidingBlock(width=0.5, height=1.5, friction=0.2)
+    assert (code, exact["slips"]) == (0, list(simulate(box, STRONGER).slips))
+    assert exact["outcome"] == found["outcome"] == "slid"
+    # a step of 1e-4 s gives up g mu dt^2 of a slip, where it starts and where it stops
+    assert found["slips"] == pytest.approx(exact["slips"], abs=1e-4)
+    assert found["message"] == "as pymunk:fixed"
+
+
+def test_a_frame_is_compared(capsys):
+    sources = ["--sources", "exact", "mujoco:fixed"]
+    code, rows = compared(capsys, *SHAKEN, *OF_A_FRAME, *sources)
+    exact, found = rows.values()
+    assert code == 0
+    assert exact["peak_ratio"] == pytest.approx(simulate(FRAME, STRONGER).peak_ratio, rel=1e-12)
+    # where in a step an impact falls costs up to half a per cent
+    assert found["peak_ratio"] == pytest.approx(exact["peak_ratio"], rel=5e-3)
+    assert abs(found["error"]) < 0.01
+    assert max(found["peak_1"], found["peak_2"]) == found["peak_ratio"]
+    assert found["parting"] < 1e-6 and {"tilt", "drift_m"} <= {*found}
+    assert found["kappa"] == exact["kappa"] > 0.0
+    own = side_by_side(FRAME, STRONGER, ["exact", "mujoco"]).set_index("source").loc["mujoco"]
+    assert (own["outcome"], own["parting"] < 1e-6) == ("rocked", True)
+    peak = respond("mujoco", FRAME, STRONGER).peak_ratio
+    assert peak == pytest.approx(simulate(FRAME, STRONGER).peak_ratio, rel=2e-5)
+
+
+def test_a_frame_in_words(capsys):
+    asked = [*SHAKEN, *OF_A_FRAME, "--sources", "exact", "rapier:landing"]
+    said = text_of(capsys, *asked, code=1)
+    assert said.startswith("frame   2 columns of B = 0.5 m, H = 1.5 m, load 2: ")
+    assert "valid   with friction of " in said
+    assert "rapier:landing: not available: rapier:landing is not built here for bodies" in said
+    tall = ["--width", "3", "--height", "0.7", "--amplitude", "5", "--omega", "20"]
+    said = text_of(capsys, *tall, "--scene", "frame", "--load", "1", "--sources", "exact")
+    assert "not here: the beam would tip: L = 1.4 m, needs " in said
+
+
+def test_a_frame_that_would_slide_is_named(capsys):
+    asked = [*SHAKEN, *OF_A_FRAME, "--sources", "exact", "pymunk:fixed", "--duration", "1.5"]
+    _, rows = compared(capsys, *asked, "--friction", "0.38")
+    assert rows["exact"]["message"] == "the beam would slide: mu = 0.38, needs 0.436"
+    code, rows = compared(capsys, *asked, "--friction", "0.2")
+    assert code == 1
+    words = "the feet would slide: mu = 0.2, needs 0.351; the beam"
+    assert rows["exact"]["message"].startswith(words)
+    assert "the pivot slid" in rows["pymunk:fixed"]["message"]
+
+
+def test_a_floor_that_lags_has_a_column_of_its_own(capsys):
+    asked = [*SHAKEN, "--sources", "exact", "rapier:naive"]
+    assert "lag [m]" not in text_of(capsys, *asked)  # its numbers' rounding is none
+    said = text_of(capsys, *asked, "pybullet:naive")
+    assert "lag [m]" in said and "1.8e-02" in said
+    code, rows = compared(capsys, *asked, "pybullet:naive")
+    assert code == 0
+    assert rows["pybullet:naive"]["floor_lag_m"] > 1e-3 > rows["rapier:naive"]["floor_lag_m"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        (["--scene", "frame"], "--load missing; a frame requires the mass of its beam"),
+        (["--scene", "frame", "--load", "0"], "--load is '0'; it must be a positive finite number"),
+        (["--scene", "frame", "--load", "-1"], "--load is '-1'; it must be a positive"),
+        (["--scene", "frame", "--load", "nan"], "--load is 'nan'; it must be a positive"),
+        (["--columns", "2"], "--columns is 2; it may be given only with --scene frame"),
+        (["--load", "2"], "--load is 2"),
+        ([*OF_A_FRAME[:2], "--load", "1", "--columns", "1"], "--columns is 1; it must be a whole"),
+        ([*OF_A_FRAME[:2], "--load", "1", "--columns", "2.5"], "--columns is '2.5'; it must be"),
+        (["--scene", "slide"], "--friction missing; a block that slides requires one below B/H"),
+        (["--scene", "slide", "--friction", "0.34"], "--friction is 0.34; it must be below"),
+        (["--scene", "slide", "--friction", "0"], "--friction is 0"),
+        ([*OF_A_SLIDE, "--tilt", "0.3"], "--tilt is 0.3; it may be"),
+        ([*OF_A_SLIDE, "--plot", "x.png"], "--plot is x.png; it may be given only where something"),
+        ([*OF_A_SLIDE, "--sources", "dop853"], "source 'dop853' cannot be asked so: dop853 solves"),
+        (["--scene", "bridge"], "--scene is 'bridge'; it must be among block, frame, slide"),
+    ],
+)
+def test_bad_input_of_a_scene_is_one_line(options, problem, capsys):
+    refused(capsys, ["compare", *SHAKEN, *options], problem)
 
 
 def test_an_engine_is_asked_with_the_friction_and_the_step_that_are_given(capsys):
@@ -299,6 +382,4 @@ def test_every_engine_takes_a_friction_and_a_step():
 def test_a_plot_that_cannot_be_written_is_refused_before_anything_runs(tmp_path, capsys):
     refused(capsys, ["compare", *CASE, "--plot", tmp_path / "x.tif"], "--plot", ".png")
     refused(capsys, ["compare", *CASE, "--plot", tmp_path / "no" / "x.png"], "--plot")
-    slide = ["--scene", "slide", "--friction", "0.2", "--plot", tmp_path / "x.png"]
-    refused(capsys, ["compare", *CASE, *slide], "--plot", "something rocks")
     assert not list(tmp_path.iterdir())
