@@ -149,8 +149,6 @@ def test_a_folder_holds_what_is_printed_with_its_figure(mode, tmp_path, capsys):
         (["--published", "tests"], "--published is 'tests'; it must hold precision/work-precision"),
         (["--symptoms", "--published", "tests"], "it must hold contact/variants.csv"),
         (["--symptoms", "--error", "0.1"], "--error is 0.1; it may be given only without --sym"),
-        (["--dt", "0.1", "--error", "0.1"], "--error is 0.1; it may be given only without --dt"),
-        (["--dt", "5"], "--dt is 5; it must be from 1e-06 to 1 s"),
     ],
 )
 def test_refusals(arguments, words, capsys):

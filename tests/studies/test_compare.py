@@ -377,9 +377,3 @@ def test_every_engine_takes_a_friction_and_a_step():
     assert set(table["outcome"]) <= {"rocked", "overturned"}
     steps = table["steps"] * 0.001
     assert steps.between(0.9 * PULSE.duration, 1.2 * PULSE.duration).all()
-
-
-def test_a_plot_that_cannot_be_written_is_refused_before_anything_runs(tmp_path, capsys):
-    refused(capsys, ["compare", *CASE, "--plot", tmp_path / "x.tif"], "--plot", ".png")
-    refused(capsys, ["compare", *CASE, "--plot", tmp_path / "no" / "x.png"], "--plot")
-    assert not list(tmp_path.iterdir())

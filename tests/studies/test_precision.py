@@ -7,7 +7,6 @@ from functools import cache
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import refused
 
 from analytic.response import Response
 from engines import ENGINES, Scene, core_engines, installed_engines
@@ -146,19 +145,3 @@ def test_what_is_left_out_can_be_put_back(engine):
         assert row["outcome"] == "rocked"
         allowed = {"full box instead of corners": 0.6, "steps all equal": 1e-2}.get(name, 2e-3)
         assert row["peak_ratio"] == pytest.approx(whole, rel=allowed), name
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["--sources", "mujco"], ("--sources", "perhaps 'mujoco'")),
-        (["--sources", "mujoco:fixd"], ("--sources", "mujoco:fixed")),
-        (["--sources"], ("--sources", "empty")),
-        (["--jobs", "0"], ("--jobs", "positive")),
-        (["--time-limit", "nan"], ("--time-limit",)),
-        (["--engines", "mujoco"], ("--engines", "no option")),
-    ],
-)
-def test_what_cannot_be_asked_is_refused(options, words, tmp_path, capsys):
-    refused(capsys, ["precision", "--out", tmp_path / "out", *options], *words)
-    assert not (tmp_path / "out").exists()

@@ -85,6 +85,7 @@ score mujuco --out DIR | ENGINE is 'mujuco', perhaps 'mujoco'
 score pymunk --out DIR --require outcomes=٣ | --require is 'outcomes=٣'; it must be one of outcomes
 score pymunk --out DIR --require p90=1 p90=2 | --require names | :p90' twice
 contact --out DIR --sources exact | --sources is no option of contact; it takes --out, --engines
+precision --out DIR --engines mujoco | --engines is no option of precision
 compare CASE --sources exact exact | --sources names 'exact' twice | once
 compare CASE --sources | --sources is empty | housner
 sweep --sources nobody --out DIR | --sources | 'nobody' | mujoco
@@ -179,6 +180,7 @@ animate --results results --tilt 0.5 --degrees --out film.gif | --tilt | --degre
 
 # where the results go
 compare CASE --plot a.txt | --plot is 'a.txt' | .png
+compare CASE --plot a.tif | --plot is 'a.tif' | .png
 compare CASE --plot /nowhere/a.png | --plot is '/nowhere/a.png' | written
 sweep --out /dev/null/results | --out is '/dev/null/results' | folder
 contact --out '' | --out is empty | given

@@ -102,7 +102,7 @@ SETTINGS = sorted(
     for engine, setting in set(zip(KEPT["engine"], KEPT["setting"], strict=True))
     if ENGINES[engine].installed
     for each in variants(engine)
-    if each.name == setting and each.preset == DEFAULT
+    if f"{each.factor}: {each.level}" == setting and each.preset == DEFAULT
 )
 """Each setting that the published table names."""
 FIRST = [*{engine: (engine, *setting) for engine, *setting in reversed(SETTINGS)}.values()][:2]
