@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import functools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import islice
-from typing import TYPE_CHECKING, Annotated, TypeAlias, cast
+from typing import TYPE_CHECKING, Annotated, cast
 
 import numpy as np
 import pandas as pd
@@ -44,9 +43,6 @@ KEY = ["engine", "preset", "factor", "level"]
 FOUND = ["failed", "wrong", "max_error"]
 """What shows a variant's quality: outcomes of all cases, peaks of typical ones."""
 
-AnyCase: TypeAlias = "Case | RandomCase"
-"""A case of the paper, or a random frame."""
-
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
@@ -68,6 +64,7 @@ class Options:
 def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
     """Return the jobs of every variant, at one step of all and then at the library's own."""
     framed = options.scene == "frame"
+    cases: Sequence[tuple[str, Case | RandomCase]]
     cases = frame_cases(quick) if framed else block_cases(quick)
     tried = [variant for engine in options.engines for variant in variants(engine)]
     found = [
@@ -84,34 +81,34 @@ def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
     return found
 
 
-@functools.cache
-def block_cases(quick: bool) -> tuple[tuple[str, Case], ...]:
+def block_cases(quick: bool) -> list[tuple[str, Case]]:
     """Return the cases and their sets: "typical", and in full "near overturning" too."""
     chosen = [(kind, case) for kind, cases in chosen_cases(True).items() for case in cases]
     if quick:
-        chosen = [(k, c) for k, c in chosen if k == "typical" and c.aspect in (2, 4)]
-    return tuple(chosen)
+        return [(k, c) for k, c in chosen if k == "typical" and c.aspect in (2, 4)]
+    return chosen
 
 
-@functools.cache
-def frame_cases(quick: bool) -> tuple[tuple[str, RandomCase], ...]:
+def frame_cases(quick: bool) -> list[tuple[str, RandomCase]]:
     """Return the first random frames that rock and survive, with a κ below WELL_CONDITIONED."""
-    calm: Iterator[RandomCase] = (
+    calm = (
         case
         for case in draw(1, "frame")
         if np.abs(conditioning(case.block, case.motion)).max() < WELL_CONDITIONED
     )
-    return tuple(("typical", case) for case in islice(calm, 2 if quick else 4))
+    return [("typical", case) for case in islice(calm, 2 if quick else 4)]
 
 
-def is_built_for(variant: Variant, case: AnyCase) -> bool:
+def is_built_for(variant: Variant, case: Case | RandomCase) -> bool:
     """Return whether a variant's preset can hold a case: some are for one block alone."""
     asked = resolve(variant.source)
     scene = Scene(system=case.block, motion=case.motion, preset=asked.preset)
     return not asked.declared.lacks(scene, asked.used)
 
 
-def job_of(variant: Variant, kind: str, case: AnyCase, quick: bool, own_step: bool = False) -> Job:
+def job_of(
+    variant: Variant, kind: str, case: Case | RandomCase, quick: bool, own_step: bool
+) -> Job:
     """Return the job of a variant and a case, at the library's own step or at that of all."""
     options = {"settings": dict(variant.settings), **variant.scene}
     stepping = ENGINES[variant.engine].preset(variant.preset).stepping

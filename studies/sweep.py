@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import pandas as pd
 from cyclopts import Parameter
 
+from analytic import MODELS
 from studies.cases.paper import sweep_cases
 from studies.kit.arguments import figures as some_figures
 from studies.kit.jobs import Job, Question
@@ -135,7 +136,6 @@ def figures(tables: Tables) -> Mapping[str, Figure]:
 
 
 PAPER_PAIR = ("housner", "modified")
-MODELS = ("exact", *PAPER_PAIR, "onset-matched")
 
 
 @claim("Housner's linearization overturns blocks that survive, even at H/B = 3", "housner")

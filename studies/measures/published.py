@@ -28,9 +28,8 @@ from studies.sources.registry import resolve
 PUBLISHED = Path(__file__).parents[1] / "published"
 """The folder of the published tables, one folder inside for each chapter."""
 COLUMNS = Path(__file__).with_name("columns.csv")
-"""What each column means: in all tables, or in the one that its line names."""
-ABOUT = ("type", "unit", "meaning")
-"""What COLUMNS says: text, boolean, integer (a count) or number; its unit, "-" without one."""
+"""What each column means, in all tables or in the one that its line names: text, boolean, integer
+(a count) or number; its unit, "-" without one; and its meaning."""
 
 
 def published_in(folder: Path | None, names: Sequence[str]) -> Path:
@@ -83,7 +82,7 @@ def dictionary(published: Path) -> pd.DataFrame:
         for table in [f"{path.parent.name}/{path.name.partition('.')[0]}"]
         for name in pd.read_csv(path, nrows=0)
     ]
-    return pd.DataFrame(lines, columns=["table", "column", *ABOUT])
+    return pd.DataFrame(lines, columns=["table", "column", "type", "unit", "meaning"])
 
 
 LADDER = "precision/work-precision.csv"

@@ -21,8 +21,6 @@ EDGE_BAND = 2e-6
 """Relative difference of the amplitude within which an outcome that changes is hard to tell."""
 SMALLEST = 1e-6
 """Peaks below this part of θcr may go unseen."""
-LEFT = (Reason.SLID, Reason.THROWN)
-"""How a run ends that leaves the problem, which is right where the reference does so."""
 
 
 class Verdict(enum.Enum):
@@ -78,7 +76,9 @@ def judge(case: Extreme, source: str, response: Response) -> dict[str, Any]:
     verdict, reason = _verdict(case, response, error, grown)
     friction = friction_of(case, source)
     why = invalidity(case, source)
-    broken = verdict is Verdict.FAILED and response.reason not in LEFT
+    # a run that leaves the problem is right where the reference does so
+    left = response.reason in (Reason.SLID, Reason.THROWN)
+    broken = verdict is Verdict.FAILED and not left
     if why and not broken and verdict is not Verdict.GOOD:
         verdict, reason = Verdict.INVALID, f"{why} ({reason})"
     return {
