@@ -80,6 +80,10 @@ def factors(lines: pd.DataFrame) -> pd.DataFrame:
         kept, tested = mine.dropna(subset="over"), other["over"].dropna()
         wrong = mine[wrong_in(mine).isin((FALL, REST))]
         over = kept["over"].to_numpy()
+        levels = (0.5, BOUNDED, 1.0)
+        half, most, every = (
+            np.quantile(over, levels, method="inverted_cdf") if len(over) else [math.nan] * 3
+        )
         low, high = interval(over)
         table.append(
             {
@@ -88,11 +92,11 @@ def factors(lines: pd.DataFrame) -> pd.DataFrame:
                 "survivors": len(kept),
                 "median_estimate": kept["estimate"].median(),
                 "median_error": kept["error"].abs().median(),
-                "factor_50": _quantile(over, 0.5),
-                "factor_95": _quantile(over, BOUNDED),
+                "factor_50": half,
+                "factor_95": most,
                 "factor_95_low": low,
                 "factor_95_high": high,
-                "factor_all": _quantile(over, 1.0),
+                "factor_all": every,
                 "within_3": (kept["over"] <= 3.0).mean(),
                 "within_10": (kept["over"] <= 10.0).mean(),
                 "wrong": len(wrong),
@@ -115,10 +119,6 @@ def interval(over: FloatArray) -> tuple[float, float]:
     return float(low), math.inf if math.isnan(ends.high) else float(ends.high)
 
 
-def _quantile(over: FloatArray, level: float) -> float:
-    return float(np.quantile(over, level, method="inverted_cdf")) if len(over) else math.nan
-
-
 class Trust(NamedTuple):
     """What published random cases say of a source's estimates.
 
@@ -129,14 +129,9 @@ class Trust(NamedTuple):
     factor: float
     cases: int
 
-    @property
-    def holds(self) -> bool:
-        """Whether the estimates see the error."""
-        return self.factor <= MOST_TRUSTED
-
     def warning(self) -> str:
         """Say that they give no bound, or nothing."""
-        if self.holds:
+        if self.factor <= MOST_TRUSTED:
             return ""
         part = f"{100.0 * BOUNDED:.0f} % of the errors"
         if math.isinf(self.factor):
