@@ -174,7 +174,7 @@ def test_each_kind_of_wrong_outcome_on_planes_is_counted(exact):
     assert (line["false_overturnings"], line["missed_overturnings"]) == (2, 1)
     assert line["close"] == line["cases"] - 6 == found["rests"]["close"].sum()
     assert found["parts"]["p90_error"].max() < 0.21
-    assert "mujoco:naive" in planes.finding(found["parts"])
+    assert "MuJoCo" in planes.finding(found["parts"])
 
 
 @pytest.mark.parametrize(

@@ -106,8 +106,12 @@ def test_the_finding_names_who_predicts_most_and_who_misses_most():
         agrees=[True] * 4 + [False, True],
     )
     words = finding({"errors": errors})
-    assert "mujoco" in words and "all 2" in words and "10⁻⁶" in words
-    assert "box2d misses 1 outcome." in words and "exact" not in words and "47 %" not in words
+    assert "MuJoCo" in words and "all 2" in words and "10⁻⁶" in words
+    assert (
+        "Box2D (landing steps) misses 1 outcome." in words
+        and "Exact" not in words
+        and "47 %" not in words
+    )
 
 
 @pytest.mark.parametrize(
