@@ -53,8 +53,6 @@ if TYPE_CHECKING:
 
 ALONG, SHARES, SCENES, REFERENCE = "precision", "shares", "scenes", "reference"
 """The tables whose rows are measured."""
-WORLDS = 20
-"""Scenes built at once to see what memory one takes."""
 GRID = np.linspace(0.0, 1.0, 1001)
 """Of a recorded history, over its duration."""
 CASE = HISTORIES[5][1]
@@ -64,6 +62,7 @@ TYPICAL, NEAR, ALL = "typical", "near overturning", "all"
 FINE_TARGETS = (*TARGETS[1:], 1e-6)
 """Errors that are asked of every method."""
 TOLERANCES = tuple(10.0**-n for n in range(2, 13))
+TIGHT = {"event_tolerance": 1e-13}
 STEPS = (0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)
 
 
@@ -94,11 +93,9 @@ PLAIN = {
         f"SciPy {name}": Method(name.lower(), "rtol", TOLERANCES)
         for name in ("RK45", "DOP853", "Radau", "LSODA")
     },
-    "RK4": Method("rk4", "step", STEPS, {"event_tolerance": 1e-13}),
+    "RK4": Method("rk4", "step", STEPS, TIGHT),
     "RK4, contact to 1e-6": Method("rk4", "step", STEPS, {"event_tolerance": 1e-6}),
-    "average acceleration": Method(
-        "average-acceleration", "step", STEPS, {"event_tolerance": 1e-13}
-    ),
+    "average acceleration": Method("average-acceleration", "step", STEPS, TIGHT),
     **{f"{name}, closed form": Method(name) for name in ("housner", "modified", "onset-matched")},
 }
 """Name -> method, of all that are no engines."""
@@ -337,12 +334,12 @@ def grown(job: Job) -> float:
     observed = {"duration": case.duration, "times": case.times}
     scene = scene_of(case.system, case.motion, job.asked.preset, **observed, **job.options)
     worlds, pages = [build(job.asked.declared, scene)], []
-    for count in (0, WORLDS):
+    for count in (0, 20):
         worlds += [build(job.asked.declared, scene) for _ in range(count)]
         pages.append(int(status.read_text().split()[1]))
     for world in worlds:
         world.close()
-    return 4.0 * max(pages[1] - pages[0], 0) / WORLDS
+    return 4.0 * max(pages[1] - pages[0], 0) / 20
 
 
 def reference(job: Job) -> Row:

@@ -25,9 +25,6 @@ from studies.sources.registry import DEFAULT_EFFORT, Effort
 if TYPE_CHECKING:
     from studies.kit.options import Yours  # it loads the parser, which workers do without
 
-EDGE = 0.01
-"""Part of the amplitude that should not decide who overturns."""
-
 
 def window_of(system: System, motion: Motion, duration: float | None) -> float:
     """Return for how long a block is watched [s]: as given, or the motion and 8/p."""
@@ -145,13 +142,13 @@ def near_edge(case: Question, exact: Response) -> str:
     """Say where less than a hundredth of the amplitude decides whether the block overturns."""
     if exact.outcome is Outcome.FAILED or isinstance(case.system, SlidingBlock):
         return ""
-    for factor in (1.0 + EDGE, 1.0 - EDGE):
+    for factor in (1.01, 0.99):
         motion = _scaled(case.motion, factor)
         other = simulate(case.system, motion, start=case.start, duration=case.duration).outcome
         falls = [outcome is Outcome.OVERTURNED for outcome in (exact.outcome, other)]
         if falls[0] != falls[1] and other is not Outcome.FAILED:
             return (
-                f"the answer hangs on less than {100.0 * EDGE:g} % of the amplitude: at {factor:g} "
+                f"the answer hangs on less than 1 % of the amplitude: at {factor:g} "
                 f"times it, the exact block {'overturns' if falls[1] else 'does not overturn'}"
             )
     return ""
