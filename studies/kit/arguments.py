@@ -14,15 +14,7 @@ from analytic.accelerograms.text import finite_number, underflows
 from engines import ENGINES
 from engines.scene import MOST_HALF_CYCLES, perhaps
 from studies.cases.refusal import BadInputError
-from studies.sources.registry import (
-    GROUPS,
-    SOURCES,
-    UnknownSourceError,
-    all_presets,
-    allowed,
-    expanded,
-    resolve,
-)
+from studies.sources import registry
 
 T = TypeVar("T")
 MOST, LARGEST = 10**9, sys.float_info.max
@@ -123,20 +115,18 @@ several_or_none = Parameter(consume_multiple=1)
 """Values separated by spaces; of the second at least one, and None where it is not given."""
 
 
-def sources_option(
-    first: str = "", names: Iterable[str] = tuple(SOURCES), *, default: bool = True
-) -> Parameter:
-    """Return what makes an argument take sources; its help says `first`, and lists `names`."""
-    words = ", ".join(f'"{word}"' for word in GROUPS)
+def sources_option(first: str = "", *, default: bool = True) -> Parameter:
+    """Return what makes an argument take sources; its help begins with `first`."""
+    words = ", ".join(f'"{word}"' for word in registry.GROUPS)
+    presets = " ".join(registry.all_presets())
     return Parameter(
         consume_multiple=True,
         show_default=" ".join if default else False,
-        converter=lambda _, tokens: tuple(expanded(token.value for token in tokens)),
+        converter=lambda _, tokens: tuple(registry.expanded(token.value for token in tokens)),
         validator=_check_sources,
         help=(
-            f"{first}{' '.join(names)}; an engine takes a preset after a colon: "
-            f"{' '.join(all_presets())}; {words} stand for the engines of the published studies "
-            "and for all that are installed."
+            f"{first}{' '.join(registry.SOURCES)}; an engine takes a preset after a colon: {presets}; {words} "
+            "stand for the engines of the published studies and for all that are installed."
         ),
     )
 
@@ -145,11 +135,12 @@ def _check_sources(_: type, names: Sequence[str] | None) -> None:
     if names is None:  # they are not given
         return
     if not names:
-        raise BadInputError(f"--sources is empty; it must name at least one of {allowed()}")
+        words = f"it must name at least one of {registry.allowed()}"
+        raise BadInputError(f"--sources is empty; {words}")
     for name in names:
         try:
-            resolve(name)
-        except UnknownSourceError as error:
+            registry.resolve(name)
+        except registry.UnknownSourceError as error:
             raise BadInputError(f"--sources: {error}") from error
     refuse_repeats("--sources", names)
 
@@ -164,7 +155,6 @@ def _check_engines(_: type, names: Sequence[str] | None) -> None:
 
 
 Sources = Annotated[tuple[str, ...], sources_option()]
-EngineSources = Annotated[tuple[str, ...], sources_option("Engines: ", ENGINES)]
 Engines = Annotated[
     tuple[str, ...],
     Parameter(consume_multiple=True, show_default=_spaced, validator=_check_engines),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -21,6 +20,7 @@ from analytic.response import Outcome, Reason, Response
 from engines.parts.compiled import PACKAGE
 from engines.run.monitor import compile_monitor
 from studies.cases.refusal import BadInputError
+from studies.kit.app import ENDING
 from studies.kit.identity import Maker, maker_of
 from studies.kit.jobs import Job, Row, ask, unanswered
 from studies.kit.say import say
@@ -29,8 +29,6 @@ from studies.kit.workers import MEMORY_BYTES, Lost, answers, deferring
 
 FEW = 32
 """Jobs up to which to interpret takes less time than to load what is compiled."""
-ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-"""Signals that end a run."""
 LABELS = ["name", "record", "scale", "figure", "panel", "case", "aspect", "width_m", "omega_over_p"]
 """Columns that name a failed case."""
 
