@@ -118,14 +118,14 @@ several_or_none = Parameter(consume_multiple=1)
 def sources_option(first: str = "", *, default: bool = True) -> Parameter:
     """Return what makes an argument take sources; its help begins with `first`."""
     words = ", ".join(f'"{word}"' for word in registry.GROUPS)
-    presets = " ".join(registry.all_presets())
+    names, presets = " ".join(registry.SOURCES), " ".join(registry.all_presets())
     return Parameter(
         consume_multiple=True,
         show_default=" ".join if default else False,
         converter=lambda _, tokens: tuple(registry.expanded(token.value for token in tokens)),
         validator=_check_sources,
         help=(
-            f"{first}{' '.join(registry.SOURCES)}; an engine takes a preset after a colon: {presets}; {words} "
+            f"{first}{names}; an engine takes a preset after a colon: {presets}; {words} "
             "stand for the engines of the published studies and for all that are installed."
         ),
     )
