@@ -27,8 +27,6 @@ from studies.kit.store import check
 from studies.sources.registry import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
-OF_A_SLIDE = tuple(name for name in DEFAULT_SOURCES if name != "housner")
-"""By default asked of a block that slides, which has no linearization."""
 FRAMES_A_SECOND, MOST_FRAMES, MOST_SOURCES = 25, 1500, 8
 """At most a minute of film, which holds up to 1 GB of memory while it is drawn."""
 CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
@@ -61,8 +59,8 @@ def command(
     slower
         Seconds of film for a second of shaking.
     """
-    if standing.scene == "slide" and sources == DEFAULT_SOURCES:
-        sources = OF_A_SLIDE
+    if standing.scene == "slide" and sources == DEFAULT_SOURCES:  # it has no linearization
+        sources = tuple(name for name in sources if name != "housner")
     check_film(out)
     if len(sources) > MOST_SOURCES:
         raise BadInputError(f"--sources are {len(sources)}; they must be at most {MOST_SOURCES}")

@@ -10,16 +10,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from engines.declaration import RECOMMENDED
-from studies.drawing.facets import (
-    HALO,
-    dot,
-    error_scale,
-    key,
-    panels,
-    preset_dots,
-    rows,
-    strip_beyond,
-)
+from studies.drawing import facets
+from studies.drawing.facets import dot, error_scale, key, panels, rows
 from studies.drawing.styles import title_of
 from studies.kit.say import capital
 from studies.measures.presets import look_of
@@ -67,14 +59,14 @@ def draw_advice(lines: pd.DataFrame, title: str) -> Figure:
             step = "own step" if np.isnan(line["value"]) else f"{line['value']:g}"
             below = line["preset"] == RECOMMENDED
             axes.annotate(step, place, (0, -11 if below else 5), ha="center", fontsize=7,
-                          textcoords="offset points", path_effects=HALO)  # fmt: skip
+                          textcoords="offset points", path_effects=facets.HALO)  # fmt: skip
         for engine in set(engines) - set(mine["engine"]):
             _in_row(axes, 0.01, engines.index(engine), "no setting keeps it")
     if len(kept):
         grid[0].set_xlim(0.5e3 * kept["wall_s"].min(), 2e3 * kept["wall_s"].max())
     note = "at the points: p dt, or the accuracy of an engine's own steps"
     drawing.suptitle(f"{fill(title, 88)}\n({note})", fontsize=11)
-    key(drawing, preset_dots(kept["preset"].unique()), 5)
+    key(drawing, facets.preset_dots(kept["preset"].unique()), 5)
     return drawing
 
 
@@ -98,12 +90,12 @@ def draw_symptoms(lines: pd.DataFrame, title: str) -> Figure:
         axes.set_title(fill(capital(str(symptom)), 40), fontsize=10, fontweight="bold", pad=16)
         axes.set_xlabel(MEASURES.get(str(group.iloc[0]["measure"]), ""), fontsize=9)
         axes.tick_params(labelbottom=True)
-        strip_beyond(axes, EDGE, "fails", along="x")
+        facets.strip_beyond(axes, EDGE, "fails", along="x")
     drawing.suptitle(title, fontsize=12)
     key(drawing, [dot(name, **look) for name, look in STAGES.values()], 4)
     return drawing
 
 
 def _in_row(axes: Any, x: float, row: int, words: str) -> None:
-    axes.text(x, row, words, fontsize=7.5, color="#888888", va="center", path_effects=HALO,
+    axes.text(x, row, words, fontsize=7.5, color="#888888", va="center", path_effects=facets.HALO,
               transform=axes.get_yaxis_transform())  # fmt: skip

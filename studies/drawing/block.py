@@ -24,19 +24,6 @@ MAGNIFIED = 2.5
 """How many times their size the rotations of the outlines are drawn."""
 
 
-def outline(width: float, height: float, theta: float) -> FloatArray:
-    """Return the corners of a block turned clockwise by `theta` [rad] about the one it stands on.
-
-    The first row is that corner, at ±width/2 on the base.
-    """
-    side = 1.0 if theta >= 0.0 else -1.0
-    corners = np.array([[0.0, 0.0], [-side * width, 0.0], [-side * width, height], [0.0, height]])
-    sine, cosine = math.sin(theta), math.cos(theta)
-    pivot, turn = [side * 0.5 * width, 0.0], np.array([[cosine, -sine], [sine, cosine]])
-    turned: FloatArray = corners @ turn + pivot
-    return turned
-
-
 def outlines(system: System, at: float) -> FloatArray:
     """Return the corners of every body of a system, shape (bodies, 4, 2) [m].
 
@@ -61,7 +48,9 @@ def draw_scene(system: System, at: float) -> Figure:
     across, high = right - left + 2.0 * spare, top + 2.0 * spare
     inch = min(4.4 / across, 3.4 / high)
     drawing = Figure(figsize=(across * inch, 0.3 + high * inch), layout="constrained")
-    axes = _stage(drawing, (left - spare, right + spare), (-spare, top + spare), 0.5 * spare)
+    axes = drawing.subplots()
+    axes.set(xlim=(left - spare, right + spare), ylim=(-spare, top + spare))
+    _set_the_stage(axes, 0.5 * spare)
     for corners in moved:
         axes.add_patch(Polygon(corners, **WHOLE))
     for corners in rest:
@@ -69,26 +58,23 @@ def draw_scene(system: System, at: float) -> Figure:
     return drawing
 
 
-def _stage(
-    drawing: Figure, across: tuple[float, float], high: tuple[float, float], ground: float
-) -> Axes:
-    """Return axes without a frame, with ground of some thickness along them."""
-    axes = drawing.subplots()
-    axes.set(xlim=across, ylim=high, aspect="equal")
+def _set_the_stage(axes: Axes, ground: float) -> None:
+    """Leave out the frame of axes that have limits, and lay ground of some thickness along them."""
+    axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.add_patch(
-        Rectangle((across[0], -ground), across[1] - across[0], ground, color=GROUND, linewidth=0)
-    )
-    return axes
+    left, right = axes.get_xlim()
+    axes.add_patch(Rectangle((left, -ground), right - left, ground, color=GROUND, linewidth=0))
 
 
 def draw_block() -> Figure:
     """Draw a block that rocks to the right, with the names of its parts."""
-    width, height, theta = 1.0, 2.2, 0.22  # in units of the drawing, and in rad
+    block, theta = RigidBlock(width=1.0, height=2.2), 0.22
     drawing = Figure(figsize=(4.4, 4.6), layout="constrained")
-    axes = _stage(drawing, (-1.2, 1.75), (-0.5, 2.6), 0.16)
-    pivot, foot, far, top = corners = outline(width, height, theta)
-    axes.add_patch(Polygon(outline(width, height, 1e-12), **DASHED))
+    axes = drawing.subplots()
+    axes.set(xlim=(-1.2, 1.75), ylim=(-0.5, 2.6))
+    _set_the_stage(axes, 0.16)
+    foot, pivot, top, far = corners = outlines(block, theta)[0]
+    axes.add_patch(Polygon(outlines(block, 0.0)[0], **DASHED))
     axes.add_patch(Polygon(corners, **WHOLE))
     centre = 0.5 * (pivot + far)
     letters: dict[str, Any] = {"fontsize": 15, "va": "center"}
@@ -103,7 +89,7 @@ def draw_block() -> Figure:
     x, y = 0.62 * centre + 0.38 * pivot
     axes.text(x - 0.15, y, "R", **letters)
     along = math.degrees(math.atan2(*(top - pivot)[::-1]))
-    alpha, turned = math.degrees(math.atan2(width, height)), math.degrees(theta)
+    alpha, turned = math.degrees(block.alpha), math.degrees(theta)
     arcs = ((1.3, along, along + alpha, 0.78, "α"), (2.3, 180.0 - turned, 180.0, 1.3, "θ"))
     for size, first, last, distance, name in arcs:
         axes.add_patch(Arc(tuple(pivot), size, size, theta1=first, theta2=last, color=INK))
@@ -123,13 +109,7 @@ def _arrow(start: Any, end: Any, style: str, colour: str, linewidth: float = 1.0
 def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> Figure:
     """Draw the outlines at the exact solution's largest rotation, above all histories.
 
-    Parameters
-    ----------
-    block : RigidBlock
-    samples : DataFrame
-        source, time_s, theta_ratio; one of the sources is "exact".
-    lines : DataFrame
-        source, outcome and error (relative, of the peak), one line each.
+    A line has a source, its outcome and the relative error of its peak.
     """
     drawing = Figure(figsize=(10.0, 6.0), layout="constrained")
     upper, lower = drawing.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.25))[:, 0]
@@ -144,18 +124,16 @@ def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> 
     panels = upper.subplots(1, len(others), sharey=True)
     for axes, line in zip(panels, others.to_dict("records"), strict=True):
         source = line["source"]
-        axes.set(xlim=(-1.15, 1.15), ylim=(-0.12, 1.75), aspect="equal")
-        axes.set_axis_off()
-        axes.add_patch(Rectangle((-1.15, -0.1), 2.3, 0.1, color=GROUND, linewidth=0))
+        axes.set(xlim=(-1.15, 1.15), ylim=(-0.12, 1.75))
+        _set_the_stage(axes, 0.1)
         looks: list[tuple[float, dict[str, Any]]] = [
             (at["exact"], {"facecolor": GHOST, "edgecolor": "#8a8a8a", "linewidth": 0.8}),
             (at[source], {"fill": False, "edgecolor": style_of(source).colour, "linewidth": 2.2}),
         ]
         for ratio, look in looks:
             theta = min(max(MAGNIFIED * ratio * block.alpha, -0.5 * math.pi), 0.5 * math.pi)
-            axes.add_patch(Polygon(outline(block.width, block.height, theta), **look))
-        housner = "Housner's linearization"
-        title = housner if source == "housner" else full_name(source)
+            axes.add_patch(Polygon(outlines(block, theta)[0], **look))
+        title = "Housner's linearization" if source == "housner" else full_name(source)
         axes.set_title(title, fontsize=10, fontweight="bold")
         axes.text(0.5, -0.03, _verdict(line), transform=axes.transAxes, ha="center", va="top",
                   fontsize=11)  # fmt: skip
@@ -189,11 +167,11 @@ def _histories(axes: Axes, found: dict[str, pd.DataFrame], instant: float) -> No
 
 def _look(source: str) -> dict[str, Any]:
     """Return how a history is drawn: the exact one as a band on which landing steps lie."""
-    style, (engine, colon, _) = style_of(source), source.partition(":")
+    style = style_of(source)
     if source == "exact":
         return {"color": GHOST, "linewidth": 7.0, "label": "exact", "zorder": 1}
-    if colon:
-        label = f"{title_of(engine)}, as documented"
+    if ":" in source:
+        label = f"{title_of(source)}, as documented"
         return {"color": style.colour, "linewidth": 1.6, "label": label}
     if not style.marker:
         return {"color": style.colour, "linestyle": "--", "linewidth": 1.8, "label": "Housner"}
@@ -201,5 +179,5 @@ def _look(source: str) -> dict[str, Any]:
         **{"color": style.colour, "linestyle": "none", "marker": style.marker, "markersize": 5.0},
         "markerfacecolor": "none",
         "markevery": (0 if style.marker == "o" else 8, 16),
-        "label": f"{title_of(engine)}, landing steps",
+        "label": f"{title_of(source)}, landing steps",
     }

@@ -12,26 +12,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from studies.drawing.facets import key, sheet
 from studies.drawing.letters import drawable, families
 from studies.drawing.styles import look_at
 
 MOST_DRAWN = 60
 """Blocks in the picture, those that overturn first."""
-LONGEST_NAME = 24
-"""Letters of a name."""
-ASKED: dict[str, Any] = {"color": "#666666", "linewidth": 0.8, "linestyle": (0, (5, 4))}
 
 
 def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Figure:
     """Draw, for each block and record, the factors from lifting to overturning.
 
-    Parameters
-    ----------
-    lines : DataFrame
-        Columns of blocks.csv, a line for each block and record, in the order in which blocks stand.
-    scales : sequence of float
-        Factors that were asked for.
-    title : str
+    The lines, with the columns of blocks.csv, are in the order in which blocks stand; the scales
+    are the factors that were asked for.
     """
     records = [*dict.fromkeys(lines.sort_index()["record"])]
     names = [*dict.fromkeys(lines["name"])]
@@ -39,15 +32,14 @@ def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Fig
     names = names[:MOST_DRAWN]
     fonts = families([title, *names, *records])
     with rc_context({"font.family": fonts, "text.parse_math": False}):
-        height = 1.9 + len(names) * max(0.21, 0.1 * len(records))
-        drawing = Figure(figsize=(8.0, height), layout="constrained")
-        axes = drawing.subplots()
+        drawing, (axes,) = sheet((8.0, 1.9 + len(names) * max(0.21, 0.1 * len(records))))
         handles = [
             _draw_record(axes, lines[lines["record"] == record], names, place, len(records))
             for place, record in enumerate(records)
         ]
         for scale in scales:
-            asked = axes.axvline(scale, label="scale asked for", zorder=0.5, **ASKED)
+            asked = axes.axvline(scale, label="scale asked for", zorder=0.5, color="#666666",
+                                 linewidth=0.8, linestyle=(0, (5, 4)))  # fmt: skip
         axes.set(xscale="log", ylim=(len(names) - 0.4, -0.6), xlabel="factor on the record  [–]")
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_formatter("{x:g}")
@@ -55,8 +47,7 @@ def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Fig
         axes.set_yticks(range(len(names)), map(_short, names), fontsize=8)
         axes.grid(axis="y", alpha=0.2)
         axes.set_title(drawable(title) + kept, fontsize=10, wrap=True)
-        drawing.legend(handles=[*handles, asked], loc="outside lower center", frameon=False,
-                       ncols=min(len(handles) + 1, 4))  # fmt: skip
+        key(drawing, [*handles, asked], min(len(handles) + 1, 4), 10.0)
     return drawing
 
 
@@ -82,4 +73,4 @@ def _draw_record(
 
 def _short(name: str) -> str:
     name = drawable(name)
-    return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
+    return name if len(name) <= 24 else f"{name[:23]}…"

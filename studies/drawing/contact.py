@@ -17,10 +17,8 @@ from studies.measures.presets import in_order, look_of
 
 MATTER = 6
 """How many variants of an engine are drawn one by one."""
-LOWEST, EDGE, BROKEN, HIGHEST = 1e-6, 2.5, 6.0, 15.0
-"""Errors below are drawn at the first; failed variants and wrong outcomes in the strip."""
-LEVELS = {AS_BEST: "as tuned", BY_DEFAULT: "its own", OWN_STEP: "its own"}
-"""Level of a factor -> what it is called beside a row."""
+LOWEST = 1e-6
+"""Errors below are drawn here."""
 
 
 def draw_contact(lines: pd.DataFrame) -> Figure:
@@ -29,18 +27,17 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
     drawn = [_ordered(lines[lines["engine"] == engine]) for engine in engines]
     most = max(len(ordered) for ordered, _ in drawn)
     drawing, grid = panels(len(engines), 2, (4.9, 0.6 + 0.2 * most), 0.9, sharex=True)
-    grid[0].set(xscale="log", xlim=(LOWEST / 2.0, HIGHEST))
+    grid[0].set(xscale="log", xlim=(LOWEST / 2.0, 15.0))
     error_scale(grid[0].xaxis, LOWEST, 1.0)
     for axes, engine, (ordered, others) in zip(grid, engines, drawn, strict=True):
-        _one_engine(axes, ordered)
+        _one_engine(axes, ordered.to_dict("records"))
         axes.set_ylim(most + 0.5, -0.6)
         axes.set_title(title_of(engine), fontsize=11, fontweight="bold", loc="left")
         axes.text(1.0, most, _summed(others), fontsize=8.5, ha="right", va="center",
                   color="#555555", transform=axes.get_yaxis_transform())  # fmt: skip
+    words = "error of the peak, median to largest\n(equal steps all at one p dt)"
     for axes in grid[-2:]:
-        axes.set_xlabel(
-            "error of the peak, median to largest\n(equal steps all at one p dt)", fontsize=10
-        )
+        axes.set_xlabel(words, fontsize=10)
     changed = lines[lines["factor"] != ""]
     drawing.suptitle(
         f"{changed['worse'].sum()} of {len(changed)} changes of a contact, one at a time, break "
@@ -53,10 +50,9 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
     return drawing
 
 
-def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
-    records = ordered.to_dict("records")
+def _one_engine(axes: Axes, records: list[dict[Any, Any]]) -> None:
     rows(axes, [_label(line) for line in records])
-    strip_beyond(axes, EDGE, "", along="x")
+    strip_beyond(axes, 2.5, "", along="x")  # of failed variants and wrong outcomes
     for place, (text, line) in enumerate(zip(axes.get_yticklabels(), records, strict=True)):
         colour = look_of(str(line["preset"])).colour
         text.set(color=colour, fontweight="normal" if line["factor"] else "bold")
@@ -64,9 +60,9 @@ def _one_engine(axes: Axes, ordered: pd.DataFrame) -> None:
         axes.plot([median, error], [place, place], color=colour, linewidth=2.0, alpha=0.5)
         axes.plot(error, place, "o", color=colour, markersize=4.5 if line["factor"] else 7)
         if line["failed"]:
-            axes.plot(BROKEN, place, "X", color="#000000", markersize=6)
+            axes.plot(6.0, place, "X", color="#000000", markersize=6)
         elif line["wrong"]:
-            axes.plot(BROKEN, place, "s", color="#000000", fillstyle="none", markersize=5.5)
+            axes.plot(6.0, place, "s", color="#000000", fillstyle="none", markersize=5.5)
 
 
 def _ordered(lines: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
@@ -105,7 +101,8 @@ def _summed(others: pd.DataFrame) -> str:
 
 def _label(line: dict[Any, Any]) -> str:
     first, comma, rest = str(line["level"]).partition(", ")
-    level = LEVELS.get(first, first) + comma + rest
+    names = {AS_BEST: "as tuned", BY_DEFAULT: "its own", OWN_STEP: "its own"}
+    level = names.get(first, first) + comma + rest
     if not line["factor"]:
         return capital(look_of(str(line["preset"])).short)
     return f"without {level}" if line["factor"] == LEFT_OUT else f"{line['factor']}: {level}"

@@ -21,34 +21,29 @@ from studies.measures.presets import in_order, look_of
 
 STRIP = "#eeeeee"
 """Behind what has no place on a scale: failed or wrong."""
-ERRORS = "cividis_r"
-"""Colours of errors from small to large, the same in order of lightness for every reader."""
 HALO = [withStroke(linewidth=2.5, foreground="white")]
-NARROWEST = 7.6
-"""Width that title and key of one panel need [in]."""
+
+
+def sheet(
+    size: tuple[float, float], down: int = 1, across: int = 1, **shared: Any
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure of a size [in], and its panels row by row."""
+    drawing = Figure(figsize=size, layout="constrained")
+    return drawing, list(drawing.subplots(down, across, squeeze=False, **shared).flat)
 
 
 def panels(
-    count: int, across: int, each: tuple[float, float], extra: float = 1.0, **shared: Any
+    count: int, across: int, each: tuple[float, float], extra: float, **shared: Any
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure of some panels in rows, without the places that are left over.
+    """Return a figure of some panels, so many side by side at most, and no empty places.
 
-    Parameters
-    ----------
-    count, across : int
-        How many panels, and how many of them side by side at most.
-    each : tuple
-        Width and height of one [in].
-    extra : float
-        Height of what stands above and below all [in].
-    shared : dict
-        For `Figure.subplots`.
+    `each` is the size of one, and `extra` the height of what stands above and below all [in].
     """
     across = max(min(across, count), 1)
     down = max(math.ceil(count / across), 1)
-    size = (max(each[0] * across, NARROWEST), each[1] * down + extra)
-    drawing = Figure(figsize=size, layout="constrained")
-    grid = list(drawing.subplots(down, across, squeeze=False, **shared).flat)
+    # title and key of one panel need some width
+    size = (max(each[0] * across, 7.6), each[1] * down + extra)
+    drawing, grid = sheet(size, down, across, **shared)
     for axes in grid[count:]:
         axes.remove()
     for axes in grid[max(count - across, 0) : count]:
@@ -81,32 +76,24 @@ def strip_beyond(axes: Axes, start: float, words: str, *, along: str = "y") -> N
     The axes must have the limits that they will keep; the strip ends at the larger one.
     """
     end = max(getattr(axes, f"get_{along}lim")())
-    look: dict[str, Any] = {"color": STRIP, "zorder": -2, "linewidth": 0.0}
-    letters: dict[str, Any] = {"fontsize": 8, "color": "#666666"}
-    if along == "y":
-        axes.axhspan(start, end, **look)
-        axes.text(0.995, math.sqrt(start * end), words, transform=axes.get_yaxis_transform(),
-                  ha="right", va="center", **letters)  # fmt: skip
-    else:
-        axes.axvspan(start, end, **look)
-        axes.text(math.sqrt(start * end), 1.0, words, transform=axes.get_xaxis_transform(),
-                  ha="center", va="bottom", **letters)  # fmt: skip
+    middle = math.sqrt(start * end)
+    span: Any = axes.axhspan if along == "y" else axes.axvspan
+    span(start, end, color=STRIP, zorder=-2, linewidth=0.0)
+    x, y, ha, va = (0.995, middle, "right", "center")
+    if along == "x":
+        x, y, ha, va = (middle, 1.0, "center", "bottom")
+    axes.text(x, y, words, transform=getattr(axes, f"get_{along}axis_transform")(), ha=ha, va=va,
+              fontsize=8, color="#666666")  # fmt: skip
 
 
-def cells(
-    axes: Axes, values: ArrayLike, low: float, high: float, columns: Sequence[str] = ()
-) -> Any:
-    """Paint a matrix of errors of either sign, the first row above; what has none stays white.
+def cells(axes: Axes, values: ArrayLike, least: float) -> Any:
+    """Paint a matrix of errors, the first row above; return the image, for a colour bar.
 
-    `low` and `high` are the errors at the ends of the colours; the names of the columns are written
-    above them. Return the image, for a colour bar.
+    The colours end at `least` and 1, in order of lightness for every reader; what has no error
+    stays white.
     """
-    found = np.asarray(values, np.float64)
-    image = axes.imshow(np.ma.masked_invalid(np.abs(found)), aspect="auto", cmap=ERRORS,
-                        interpolation="nearest", norm=LogNorm(low, high, clip=True))  # fmt: skip
-    if columns:
-        axes.set_xticks(range(len(columns)), columns)
-        axes.xaxis.tick_top()
+    image = axes.imshow(np.ma.masked_invalid(values), aspect="auto", cmap="cividis_r",
+                        interpolation="nearest", norm=LogNorm(least, 1.0, clip=True))  # fmt: skip
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
     return image
@@ -122,7 +109,9 @@ def preset_dots(presets: Iterable[str]) -> list[Line2D]:
     return [dot(look_of(name).short, "o", look_of(name).colour) for name in in_order(presets)]
 
 
-def key(drawing: Figure, handles: Sequence[Any], across: int = 6, **look: Any) -> None:
+def key(
+    drawing: Figure, handles: Sequence[Any], across: int = 6, fontsize: float = 9.0, **look: Any
+) -> None:
     """Write a key of labelled artists below all panels, so many side by side."""
-    drawing.legend(handles=list(handles), loc="outside lower center", ncols=across,
-                   **{"frameon": False, "fontsize": 9, **look})  # fmt: skip
+    drawing.legend(handles=handles, loc="outside lower center", ncols=across, frameon=False,
+                   fontsize=fontsize, **look)  # fmt: skip

@@ -10,52 +10,45 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from studies.drawing.facets import key, sheet
 from studies.drawing.styles import LOWEST, line_of, name_of, style_of
-
-OVERTURNED = "overturned"
 
 
 def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -> Figure:
-    """Draw time histories over each other, a panel for each value of `panel`.
+    """Draw time histories over each other, a panel for each value of `panel` in samples.
 
-    Parameters
-    ----------
-    samples : DataFrame
-        Columns panel, pulse, width_m, height_m, amplitude_g, source, outcome, time_s, ground_g,
-        theta_ratio.
-    title : str
-    errors : bool
-        Whether to draw under each panel how far its lines are from the exact one, if there is one.
+    With errors, under each panel how far its lines are from the exact one, if there is one.
     """
-    panels, sources = samples["panel"].unique(), list(samples["source"].unique())
+    sources, groups = samples["source"].unique(), list(samples.groupby("panel", sort=False))
     heights = (1.5, 1.0) if errors and "exact" in sources else (1.0,)
-    size = (10.0, (3.6 if len(heights) > 1 else 2.9) * len(panels) + 1.3)
-    drawing = Figure(figsize=size, layout="constrained")
-    grid = drawing.subplots(len(panels) * len(heights), height_ratios=heights * len(panels),
-                            squeeze=False)[:, 0]  # fmt: skip
-    for axes, name in zip(grid[:: len(heights)], panels, strict=True):
-        _draw_panel(axes, samples[samples["panel"] == name])
-    for axes, name in zip(grid[1::2] if len(heights) > 1 else (), panels, strict=False):
-        _draw_errors(axes, samples[samples["panel"] == name])
+    size = (10.0, (3.6 if len(heights) > 1 else 2.9) * len(groups) + 1.3)
+    down = len(groups) * len(heights)
+    drawing, grid = sheet(size, down, height_ratios=heights * len(groups))
+    for place, (_, panel) in enumerate(groups):
+        _draw_panel(grid[place * len(heights)], panel)
+        if len(heights) > 1:
+            _draw_errors(grid[2 * place + 1], panel)
     grid[-1].set_xlabel("time  t  [s]")
     drawing.suptitle(title)
-    handles = [Line2D([], [], label=name_of(source), **_look(source)) for source in sources]
+    handles = [
+        Line2D([], [], label=name_of(source), **_look(source, style_of(source).width, 6.0))
+        for source in sources
+    ]
     if samples["amplitude_g"].any():
         handles.append(Line2D([], [], color="#bbbbbb", linewidth=6, label="ground acceleration"))
-    columns = math.ceil(len(handles) / math.ceil(len(handles) / 5))
-    drawing.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
+    key(drawing, handles, math.ceil(len(handles) / math.ceil(len(handles) / 5)), 10.0)
     return drawing
 
 
-def _look(source: str) -> dict[str, Any]:
+def _look(source: str, width: float, size: float = 4.5) -> dict[str, Any]:
     style = style_of(source)
-    look = {"color": style.colour, "linestyle": line_of(source), "marker": style.marker}
-    return {**look, "fillstyle": style.fill, "linewidth": style.width}
+    line = {"linestyle": line_of(source), "linewidth": width}
+    return {**style.points(size), "marker": style.marker, **line}
 
 
 def _draw_panel(axes: Axes, panel: pd.DataFrame) -> None:
     """Draw the lines of a panel, on the scale of those that survive, over the ground's motion."""
-    overturned = panel["outcome"] == OVERTURNED
+    overturned = panel["outcome"] == "overturned"
     reach = panel.loc[~overturned, "theta_ratio"].abs().max()
     limit = 1.25 if overturned.any() else 1.15 * (reach if reach > 1e-6 else 1e-6)
     motion = panel[panel["time_s"].notna()].drop_duplicates("time_s").sort_values("time_s")
@@ -70,13 +63,13 @@ def _draw_panel(axes: Axes, panel: pd.DataFrame) -> None:
     level = 0.9
     for source, points in panel.groupby("source", sort=False):
         style, every = style_of(str(source)), max(len(points) // 40, 1)
-        look = {**style.points(), "marker": style.marker, "linestyle": line_of(str(source))}
-        width = style.width if style.line else 0.7
-        axes.plot(points["time_s"], points["theta_ratio"], **look, linewidth=width, markevery=every)
-        leaving = points[(points["theta_ratio"].abs() > limit) & (points["outcome"] == OVERTURNED)]
+        look = _look(str(source), style.width if style.line else 0.7)
+        axes.plot(points["time_s"], points["theta_ratio"], **look, markevery=every)
+        beyond = points["theta_ratio"].abs() > limit
+        leaving = points[beyond & (points["outcome"] == "overturned")]
         if len(leaving):  # each is named in a row of its own
             time, ratio = leaving[["time_s", "theta_ratio"]].iloc[0]
-            axes.annotate(f" {OVERTURNED}", (time, math.copysign(level * limit, ratio)),
+            axes.annotate(" overturned", (time, math.copysign(level * limit, ratio)),
                           color=style.colour, fontsize=8, va="center")  # fmt: skip
             level -= 0.11
     axes.axhline(0.0, color="#999999", linewidth=0.6)
@@ -94,7 +87,7 @@ def _draw_panel(axes: Axes, panel: pd.DataFrame) -> None:
 
 def _draw_errors(axes: Axes, panel: pd.DataFrame) -> None:
     found = panel.pivot_table(index="time_s", columns="source", values="theta_ratio")
-    for source in [name for name in panel["source"].unique() if name != "exact"]:
+    for source in panel.loc[panel["source"] != "exact", "source"].unique():
         off = (found[source] - found["exact"]).abs()
         # the smallest of a stretch would be the zeros between two swings
         worst = off.rolling(max(len(off) // 60, 1), center=True, min_periods=1).max()

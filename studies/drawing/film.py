@@ -27,7 +27,6 @@ from studies.kit.tables import draft
 
 HELD_S = 1.5
 """How long a film stays at its end [s], where its verdicts are read."""
-NONE = Image.Dither.NONE
 POSTS = 9
 """Posts that stand still behind the base, so that its motion is seen."""
 
@@ -54,9 +53,10 @@ def _write_gif(path: Path, stage: "Stage", rate: int) -> None:
     """Write a film with one palette, undithered: others would flicker, and take long to find."""
     seen = [stage.picture(frame) for frame in (0, stage.count // 2, stage.count - 1)]
     sheet = Image.fromarray(np.concatenate(seen))
-    palette = sheet.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=NONE)
+    plain = Image.Dither.NONE
+    palette = sheet.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=plain)
     first, *others = (
-        Image.fromarray(picture).quantize(palette=palette, dither=NONE)
+        Image.fromarray(picture).quantize(palette=palette, dither=plain)
         for picture in stage.pictures()
     )
     each = 1000 // rate
@@ -90,7 +90,7 @@ class Stage:
         upper, lower = self.figure.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1))[:, 0]
         self._panels = _panels(upper, system, rows)
         self._clock = _graph(lower.subplots(), system, motion, times, rows)
-        self._moving = [*(artist for panel in self._panels for artist in panel.moving), self._clock]
+        self._moving = [*chain(*(panel.moving for panel in self._panels)), self._clock]
         for artist in self._moving:
             artist.set_animated(True)
         self._canvas = FigureCanvasAgg(self.figure)
@@ -125,22 +125,22 @@ class Panel:
         colour, at_rest = style_of(row["source"]).colour, [*outlines(system, 0.0)]
         axes.set_axis_off()
         axes.set_title(row["source"], fontsize=9)
-        posts = axes.vlines(self._places(0.0), 0.0, self._top, color="#e4e4e4", lw=2, zorder=0)
-        self._posts: Any = posts
+        self._posts: Any = axes.vlines(self._places(0.0), 0.0, self._top, color="#e4e4e4", lw=2,
+                                       zorder=0)  # fmt: skip
         low = (-2.0 * reach, -0.25 * reach), 4.0 * reach, 0.25 * reach
         ground = axes.add_patch(Rectangle(*low, color="#9a9a9a"))
         bodies = PolyCollection(at_rest, facecolor=colour, edgecolor="#222222", alpha=0.8, zorder=3)
         self._shown: list[tuple[Any, FloatArray]] = [(bodies, row["theta"])]
-        if exact is not None and row["source"] != "exact":
-            dashed: dict[str, Any] = {"linestyle": (0, (3, 2)), "linewidth": 1.2, "zorder": 4}
-            ghost = PolyCollection(at_rest, facecolor="none", edgecolor="#000000", **dashed)
+        if exact is not None:
+            ghost = PolyCollection(at_rest, facecolor="none", edgecolor="#000000", linewidth=1.2,
+                                   linestyle=(0, (3, 2)), zorder=4)  # fmt: skip
             self._shown.append((ghost, exact))
         self._since, self._words = verdict(row, exact, system)
         self._verdict = axes.text(0.5, 0.98, "", transform=axes.transAxes, ha="center", va="top",
                                   fontsize=9, color=colour, fontweight="bold")  # fmt: skip
         shown = [axes.add_collection(bodies) for bodies, _ in self._shown]
         # the ground hides the feet of the posts
-        self.moving: list[Artist] = [posts, ground, *shown, self._verdict]
+        self.moving: list[Artist] = [self._posts, ground, *shown, self._verdict]
 
     def _places(self, shift: float) -> FloatArray:
         places = (np.arange(POSTS + 2, dtype=np.float64) - 0.5 * (POSTS + 1)) * self._spacing
@@ -164,7 +164,10 @@ def _panels(place: SubFigure, system: System, rows: Sequence[Row]) -> list[Panel
     look = {"xlim": (-reach, reach), "ylim": (-0.25 * reach, top), "aspect": "equal"}
     grid = place.subplots(1, len(rows), sharey=True, squeeze=False, subplot_kw=look)[0]
     exact = next((row["theta"] for row in rows if row["source"] == "exact"), None)
-    return [Panel(axes, system, row, exact) for axes, row in zip(grid, rows, strict=True)]
+    return [
+        Panel(axes, system, row, None if row["source"] == "exact" else exact)
+        for axes, row in zip(grid, rows, strict=True)
+    ]
 
 
 def _graph(

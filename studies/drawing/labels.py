@@ -10,18 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patheffects import withStroke
 from matplotlib.typing import ColorType
+from numpy.typing import ArrayLike
 from scipy.optimize import isotonic_regression
 from textalloc import allocate
 
 from analytic.motion import FloatArray
+from studies.drawing.facets import HALO
 from studies.kit.pictures import lay_out
-
-LINE_HEIGHT = 1.25
-"""Distance of two names over the size of their letters."""
-BEGINNING = 1.03
-"""Where names beside axes begin, over the width of these."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,15 +30,16 @@ class Name:
     colour: ColorType
 
 
-def spread(levels: Sequence[float], gap: float) -> FloatArray:
+def spread(levels: ArrayLike, gap: float) -> FloatArray:
     """Return levels moved by as little as puts each at least `gap` from the next; order is kept.
 
     The least squares of the moves.
     """
-    order = np.argsort(levels, kind="stable")
+    found = np.asarray(levels, np.float64)
+    order = np.argsort(found, kind="stable")
     gaps = gap * np.arange(len(order))
     moved = np.empty(len(order))
-    moved[order] = isotonic_regression(np.asarray(levels, np.float64)[order] - gaps).x + gaps
+    moved[order] = isotonic_regression(found[order] - gaps).x + gaps
     return moved
 
 
@@ -59,17 +56,17 @@ def beside(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
     to_axes = axes.transScale + axes.transLimits
     places = to_axes.transform([(name.x, name.y) for name in names])
     points = 72.0 * axes.get_window_extent().height / axes.figure.dpi
-    levels = spread(np.clip(places[:, 1], 0.0, 1.0).tolist(), LINE_HEIGHT * size / points)
+    levels = spread(np.clip(places[:, 1], 0.0, 1.0), 1.25 * size / points)
     levels -= max(float(levels.max()) - 1.0, 0.0)
     for name, (x, y), level in zip(names, places, levels, strict=True):
-        line = [(min(x, 1.0), BEGINNING - 0.01), (min(max(y, 0.0), 1.0), level)]
+        line = [(min(x, 1.0), 1.02), (min(max(y, 0.0), 1.0), level)]
         axes.add_artist(Line2D(*line, color=name.colour, linewidth=0.5, transform=axes.transAxes,
                                clip_on=False))  # fmt: skip
-        axes.text(BEGINNING, level, name.text, color=name.colour, fontsize=size, va="center",
+        axes.text(1.03, level, name.text, color=name.colour, fontsize=size, va="center",
                   transform=axes.transAxes)  # fmt: skip
 
 
-def around(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
+def around(axes: Axes, names: Sequence[Name]) -> None:
     """Write names near their points, clear of each other and of the lines and words there.
 
     To be called when all is drawn.
@@ -91,16 +88,16 @@ def around(axes: Axes, names: Sequence[Name], size: float = 8.0) -> None:
         text_list=[name.text for name in names],
         x_lines=[line[:, 0] for line in taken],
         y_lines=[line[:, 1] for line in taken],
-        textsize=size,
+        textsize=8.0,
         textcolor=colours,
         linecolor=colours,
         linewidth=0.5,
-        margin=size / 1200.0,  # both in parts of the axes: a few points
-        min_distance=size / 720.0,
+        margin=8.0 / 1200.0,  # both in parts of the axes: a few points
+        min_distance=8.0 / 720.0,
         avoid_label_lines_overlap=True,
         avoid_crossing_label_lines=True,
         va="bottom",
-        path_effects=[withStroke(linewidth=2.5, foreground="white")],
+        path_effects=HALO,
     )
     for other in others:
         other.set_visible(True)

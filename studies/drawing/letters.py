@@ -7,21 +7,25 @@ import matplotlib as mpl
 from matplotlib.font_manager import findfont, fontManager, get_font
 from matplotlib.ft2font import FT2Font
 
-OWN = "DejaVu Sans"
-"""The font that comes with matplotlib."""
-OTHERS = (
-    *("Noto Sans CJK JP", "Noto Sans JP", "IPAexGothic", "Yu Gothic", "Hiragino Sans", "Meiryo"),
-    *("Microsoft YaHei", "PingFang SC", "WenQuanYi Zen Hei", "Malgun Gothic"),
+FONTS = (
+    *(
+        "DejaVu Sans",
+        "Noto Sans CJK JP",
+        "Noto Sans JP",
+        "IPAexGothic",
+        "Yu Gothic",
+        "Hiragino Sans",
+    ),
+    *("Meiryo", "Microsoft YaHei", "PingFang SC", "WenQuanYi Zen Hei", "Malgun Gothic"),
     *("Noto Sans Devanagari", "Noto Sans Thai", "Noto Emoji", "Segoe UI Emoji", "Symbola"),
 )
-"""Fonts that are used where they are installed."""
-BOX = "□"
+"""Fonts that are used where they are installed; the first comes with matplotlib."""
 
 
 @cache
 def _fonts() -> Mapping[str, FT2Font]:
     there = set(fontManager.get_font_names())
-    return {name: get_font(findfont(name)) for name in (OWN, *OTHERS) if name in there}
+    return {name: get_font(findfont(name)) for name in FONTS if name in there}
 
 
 def drawable(words: str) -> str:
@@ -30,7 +34,7 @@ def drawable(words: str) -> str:
         return words
     fonts = _fonts().values()
     return "".join(
-        letter if any(font.get_char_index(ord(letter)) for font in fonts) else BOX
+        letter if any(font.get_char_index(ord(letter)) for font in fonts) else "□"
         for letter in words
     )
 

@@ -7,13 +7,11 @@ from collections.abc import Mapping
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.drawing.facets import error_scale
+from studies.drawing.facets import error_scale, sheet
 from studies.drawing.labels import Name, beside
 
 ONSETS = {"0": ("#D55E00", "lifts at g α"), "1": ("#0072B2", "lifts at g tan α")}
 """What a variant takes as the onset -> its colour, and what that is."""
-NAMED_AT = 0.9
-"""Part of the cases at which a line is named: at its end, the worst case, lines lie together."""
 
 
 def draw_distributions(
@@ -21,8 +19,7 @@ def draw_distributions(
 ) -> Figure:
     """Draw a panel for each grid: colour is the onset of a line, dash its frequency."""
     grids = list(quantiles["grid"].unique())
-    drawing = Figure(figsize=(9.4, 5.2), layout="constrained")
-    panels = drawing.subplots(1, len(grids), sharex=True, sharey=True, squeeze=False)[0]
+    drawing, panels = sheet((9.4, 5.2), 1, len(grids), sharex=True, sharey=True)
     for axes, grid in zip(panels, grids, strict=True):
         names = []
         for changed, rows in quantiles[quantiles["grid"] == grid].groupby("changed", sort=False):
@@ -32,7 +29,8 @@ def draw_distributions(
             axes.plot(rows["quantile"], rows["error"], color=colour, linestyle=dash,
                       linewidth=1.8 if name else 0.9, alpha=0.6 if pale else 1.0)  # fmt: skip
             words = titles[str(changed)].partition(", ")[2].partition(" (")[0]
-            place = rows[rows["quantile"] <= NAMED_AT].sort_values("quantile").iloc[-1]
+            # at its end, the worst case, lines lie together
+            place = rows[rows["quantile"] <= 0.9].sort_values("quantile").iloc[-1]
             text = f"{name}: {words}" if name else words
             names.append(Name(text, float(place["quantile"]), float(place["error"]), colour))
         axes.set(yscale="log", xlim=(0.0, 1.0), ylim=(1e-4, 1e1), title=f"{grid} grid")

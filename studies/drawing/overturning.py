@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from textwrap import fill
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -16,20 +18,16 @@ from scipy.ndimage import distance_transform_edt
 
 from analytic.motion import FloatArray
 from studies.cases.window import AXES, LEAST_ONSETS, Window
-from studies.drawing.facets import key, panels
-from studies.drawing.styles import engine_title, full_name, style_of
+from studies.drawing.facets import key, panels, sheet
+from studies.drawing.styles import full_name, style_of, title_of
 from studies.kit.say import listed
 from studies.measures.differences import conditioning_of
 from studies.measures.presets import in_words, preset_of
 from studies.measures.wrongness import NO_ANSWER, REST
 
 AMPLITUDE = "amplitude of the pulse  $a_p$ / (g tan α)  [–]"
-ACROSS, PIXELS, LETTERS = 3, 900, 32
-"""Panels in a row, points of a picture, letters of a title for each panel under it."""
-MOST_KAPPA = 1e2
-"""Upper end of the colours of κ: what is beyond needs no telling apart."""
-ROOM = 0.08
-"""Distance to its edge, over the size of the picture, of an area that has room for words."""
+ACROSS, PIXELS = 3, 900
+"""Panels in a row, and points of a picture."""
 # the palette of Okabe and Ito, lightened where a whole area is filled
 MODES = {
     "survives": "#FFFFFF",
@@ -49,14 +47,14 @@ VERDICTS = {
     "invalid": ("#999999", "not counted: slides or lifts off"),
 }
 """Verdict, or what is right -> its colour and name."""
+COLOURS = [colour for colour, _ in VERDICTS.values()]
 
 
 def draw_map(areas: pd.DataFrame, window: Window) -> Figure:
     """Draw the exact modes, and the first edge of every model, from the columns of map.csv."""
-    drawing = Figure(figsize=(8.6, 6.4), layout="constrained")
-    axes = drawing.subplots()
+    drawing, (axes,) = sheet((8.6, 6.4))
     codes = np.clip(_picture(areas[areas["model"] == "exact"], window), -1, 3) + 1
-    _paint(axes, codes, list(MODES.values()), window)
+    _paint(axes, codes, window, [*MODES.values()])
     named = _name_the_areas(axes, codes, window)
     handles: list[Line2D | Patch] = [
         Patch(facecolor=colour, edgecolor="#888888", label=mode)
@@ -81,7 +79,7 @@ def _name_the_areas(axes: Axes, codes: FloatArray, window: Window) -> set[int]:
         size = tuple(1.0 / count for count in codes.shape)
         depth = distance_transform_edt(np.pad(codes == code, 1), sampling=size)[1:-1, 1:-1]
         column, row = np.unravel_index(int(depth.argmax()), depth.shape)
-        if depth.max() > ROOM:
+        if depth.max() > 0.08:  # as far from its edge, an area has room for words
             axes.text(x[column], y[row], mode.replace(" ", "\n", 1), ha="center", va="center",
                       fontsize=11, color="#333333")  # fmt: skip
             named.add(code)
@@ -98,7 +96,7 @@ def draw_differences(areas: pd.DataFrame, cells: pd.DataFrame | None, window: Wi
     parts = {str(name): part for name, part in groups}
     right = [name for name, part in parts.items() if (part["verdict"] == "right").all()]
     shown = right[: len(right) == len(parts)]
-    drawn = [*models, *(name for name in parts if name not in right or name in shown)]
+    drawn = [*models, *(name for name in parts if name not in right), *shown]
     drawing, grid = panels(len(drawn), ACROSS, (3.0, 2.8), 0.9)
     exact = _picture(areas[areas["model"] == "exact"], window) >= 0
     names, seen = list(VERDICTS), {"survives", "overturns"}
@@ -110,24 +108,21 @@ def draw_differences(areas: pd.DataFrame, cells: pd.DataFrame | None, window: Wi
             wrong = f"{(found != exact).mean():.1%}".replace("%", " %")
         else:
             part = parts[source]
-            over = np.where(part["outcome"] == "overturned", "overturns", "survives")
-            known = part["verdict"].where(part["verdict"] != "right", over)
-            wide = part.assign(code=known.map(names.index))
-            codes = wide.pivot(index="x", columns="onsets", values="code").to_numpy()
-            wrong = f"{(known != over).sum()} of {len(part)} cells"
+            codes = _coded(part).pivot(index="x", columns="onsets", values="code").to_numpy()
+            wrong = f"{(part['verdict'] != 'right').sum()} of {len(part)} cells"
         seen |= {names[code] for code in np.unique(codes)}
-        _paint(axes, codes, [colour for colour, _ in VERDICTS.values()], window)
+        _paint(axes, codes, window, COLOURS)
         axes.set_title(f"{full_name(str(source))}:\n{wrong} wrong", fontsize=10)
         _frame(axes, window, below=place + ACROSS >= len(drawn), left=False)
-    presets = {
-        name: [it for it in right if preset_of(it) == name] for name in map(preset_of, right)
-    }
-    alike = [f"{listed(map(engine_title, of))} {in_words(name)}" for name, of in presets.items()]
-    words = f"; no cell wrong: {'; '.join(alike)}" if right else ""
-    title = fill(f"Beside the exact map, {window.title}{words}", LETTERS * min(len(drawn), ACROSS))
+    alike: dict[str, list[str]] = {}
+    for name in right:
+        alike.setdefault(preset_of(name), []).append(title_of(name))
+    known = "; ".join(f"{listed(titles)} {in_words(name)}" for name, titles in alike.items())
+    words = f"; no cell wrong: {known}" if right else ""
+    title = fill(f"Beside the exact map, {window.title}{words}", 32 * min(len(drawn), ACROSS))
     drawing.suptitle(title, fontsize=11)
     drawing.supylabel(AMPLITUDE, fontsize=10)
-    key(drawing, _patches(seen), 3)
+    _key(drawing, seen, 3)
     return drawing
 
 
@@ -136,14 +131,13 @@ def draw_conditioning(table: pd.DataFrame, forces: pd.DataFrame, window: Window)
 
     From conditioning.csv and validity.csv.
     """
-    drawing = Figure(figsize=(8.6, 5.8), layout="constrained")
-    axes = drawing.subplots()
+    drawing, (axes,) = sheet((8.6, 5.8))
     axes.set_facecolor("#d9d9d9")
     values = table.assign(kappa=conditioning_of(table)).pivot(
         index="x", columns="onsets", values="kappa"
     )
     shown = axes.imshow(values.to_numpy().T, origin="lower", aspect="auto", cmap="viridis",
-                        extent=_extent(window), norm=LogNorm(1.0, MOST_KAPPA))  # fmt: skip
+                        extent=_extent(window), norm=LogNorm(1.0, 1e2))  # fmt: skip
     drawing.colorbar(shown, ax=axes, extend="max", label="κ of the exact peak  [–]")
     halo: list[AbstractPathEffect] = [withStroke(linewidth=3, foreground="white")]
     for name, levels, colour in (
@@ -169,23 +163,14 @@ def draw_conditioning(table: pd.DataFrame, forces: pd.DataFrame, window: Window)
 def draw_plane(rows: pd.DataFrame, width: float) -> Figure:
     """Draw the verdicts on full sines for blocks of one width at H/B 3, a map for each engine."""
     shown = (rows["pulse"] == "full-sine") & (rows["aspect"] == 3.0) & (rows["width_m"] == width)
-    rows = rows[shown & (rows["source"] != "exact")]
-    over = np.where(rows["outcome"] == "overturned", "overturns", "survives")
-    rows = rows.assign(shown=rows["verdict"].where(rows["verdict"] != "right", over))
-    sources = list(rows["source"].unique())
-    drawing, grid = panels(len(sources), ACROSS, (2.4, 2.4), 1.3, sharex=True, sharey=True)
-    names = list(VERDICTS)
-    norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
-    for axes, source in zip(grid, sources, strict=True):
-        mine = rows[rows["source"] == source]
-        codes = mine.assign(code=mine["shown"].map(names.index)).pivot(
-            index="onsets", columns="omega_over_p", values="code"
-        )
-        colours = ListedColormap([colour for colour, _ in VERDICTS.values()])
-        axes.pcolormesh(codes.columns, codes.index, codes, shading="nearest", cmap=colours,
-                        norm=norm)  # fmt: skip
+    rows = _coded(rows[shown & (rows["source"] != "exact")])
+    groups = rows.groupby("source", sort=False)
+    drawing, grid = panels(len(groups), ACROSS, (2.4, 2.4), 1.3, sharex=True, sharey=True)
+    for axes, (source, mine) in zip(grid, groups, strict=True):
+        codes = mine.pivot(index="onsets", columns="omega_over_p", values="code")
+        axes.pcolormesh(codes.columns, codes.index, codes, shading="nearest", **_scale(COLOURS))
         right = (mine.loc[mine["verdict"] != "invalid", "verdict"] == "right").mean()
-        words = f"{engine_title(str(source))}: {right:.0%} right".replace("%", " %")
+        words = f"{title_of(str(source))}: {right:.0%} right".replace("%", " %")
         axes.set_title(words, fontsize=10)
     for axes in grid[::ACROSS]:
         axes.set_ylabel("amplitude  $a_p$ / (g tan α)")
@@ -193,8 +178,15 @@ def draw_plane(rows: pd.DataFrame, width: float) -> Figure:
         axes.set_xlabel("frequency  ω/p")
     title = f"Full sines, B = {width:g} m, H = {3.0 * width:g} m;\nevery other one comes after a "
     drawing.suptitle(f"{title}second of rest", fontsize=11)
-    key(drawing, _patches(set(rows["shown"])), 3 if len(sources) >= ACROSS else 2)
+    _key(drawing, {[*VERDICTS][code] for code in rows["code"]}, 3 if len(groups) >= ACROSS else 2)
     return drawing
+
+
+def _coded(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return rows with the place of each among VERDICTS, as code."""
+    over = np.where(rows["outcome"] == "overturned", "overturns", "survives")
+    known = rows["verdict"].where(rows["verdict"] != "right", over)
+    return rows.assign(code=known.map([*VERDICTS].index))
 
 
 def _picture(areas: pd.DataFrame, window: Window) -> FloatArray:
@@ -209,22 +201,24 @@ def _picture(areas: pd.DataFrame, window: Window) -> FloatArray:
     return found
 
 
-def _paint(axes: Axes, codes: FloatArray, colours: list[str], window: Window) -> None:
+def _scale(colours: Sequence[str]) -> dict[str, Any]:
     norm = BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours))
+    return {"cmap": ListedColormap(colours), "norm": norm}
+
+
+def _paint(axes: Axes, codes: FloatArray, window: Window, colours: Sequence[str]) -> None:
     axes.imshow(codes.T, origin="lower", aspect="auto", interpolation="nearest",
-                extent=_extent(window), cmap=ListedColormap(colours), norm=norm)  # fmt: skip
+                extent=_extent(window), **_scale(colours))  # fmt: skip
 
 
 def _extent(window: Window) -> tuple[float, float, float, float]:
     return (window.low, window.high, LEAST_ONSETS, window.onsets)
 
 
-def _patches(seen: set[str]) -> list[Patch]:
-    return [
-        Patch(facecolor=colour, edgecolor="#888888", label=label)
-        for name, (colour, label) in VERDICTS.items()
-        if name in seen
-    ]
+def _key(drawing: Figure, seen: set[str], across: int) -> None:
+    shown = [look for name, look in VERDICTS.items() if name in seen]
+    patches = [Patch(facecolor=colour, edgecolor="#888888", label=name) for colour, name in shown]
+    key(drawing, patches, across)
 
 
 def _frame(axes: Axes, window: Window, *, below: bool = True, left: bool = True) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -11,9 +9,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from engines import ENGINES
-from studies.drawing.facets import error_scale, strip_beyond
+from studies.drawing.facets import error_scale, sheet, strip_beyond
 from studies.drawing.labels import Name, around, beside
-from studies.drawing.styles import LOWEST, Style, engine_style, title_of
+from studies.drawing.styles import LOWEST, Style, style_of, title_of
 from studies.kit.say import duration, listed
 from studies.measures.costs import EXACT, costs_of, exact_cost, method_title
 from studies.measures.finer import joint
@@ -32,15 +30,8 @@ STYLES = {
     "modified, closed form": Style("#0072B2", "", "*"),
     "onset-matched, closed form": Style("#CC79A7", "", "*"),
 }
-OTHERS = "Models, and solvers of ordinary differential equations"
-LEAST = 1e-10
-"""End of the scale of errors of engines."""
-PALE, GREY = "#dcdcdc", "#b5b5b5"
-"""Of the other methods behind those that a panel is about, and of the published engines."""
-ACROSS = 3
-"""Panels of engines in a row."""
-WRONG, EDGE, TOP = 10.0, 3.0, 60.0
-"""Where methods are drawn that fail or get an outcome wrong, and the strip around that."""
+WRONG, EDGE, TOP, ACROSS = 10.0, 3.0, 60.0, 3
+"""Where methods that fail or are wrong are drawn, the strip around that, and panels in a row."""
 
 
 def engine_in(method: str) -> tuple[str, str]:
@@ -49,7 +40,7 @@ def engine_in(method: str) -> tuple[str, str]:
     return (engine, preset) if engine in ENGINES else ("", "")
 
 
-def style_of(method: str) -> Style:
+def method_style(method: str) -> Style:
     """Return the style of a method: of an engine that of its preset; grey for what is unknown."""
     engine, varied = engine_in(method)
     if not engine:
@@ -65,10 +56,10 @@ def placed(table: pd.DataFrame) -> pd.DataFrame:
     Its error is the larger of the medians; "wrong" says whether a case failed or has a wrong
     outcome. A case that was given up before it was timed has no place on the scale.
     """
-    medians = table.groupby(["method", "value"], sort=False)["median_error"].max()
-    lines = joint(table).assign(error=medians.to_numpy())
-    lines = lines.assign(wrong=(lines["failed"] > 0) | ~np.isfinite(lines["max_error"]))
-    lines["error"] = lines["error"].where(np.isfinite(lines["error"])).clip(lower=LOWEST)
+    medians = table.groupby(["method", "value"], sort=False)["median_error"].max().to_numpy()
+    lines = joint(table)
+    lines["wrong"] = (lines["failed"] > 0) | ~np.isfinite(lines["max_error"])
+    lines["error"] = np.maximum(np.where(np.isfinite(medians), medians, np.nan), LOWEST)
     return lines[lines["wall_s"] > 0.0]
 
 
@@ -76,75 +67,71 @@ def draw_precision(table: pd.DataFrame) -> Figure:
     """Draw the median error of the peak against the run time of a case."""
     lines = placed(table)
     engine = lines["method"].map(lambda method: engine_in(method)[0])
-    engines = [name for name in engine.unique() if name]
-    first = [""] * bool((engine == "").any())
-    down = -(-len(engines) // ACROSS)
-    drawing = Figure(figsize=(10.4, 1.2 + 2.9 * len(first) + 2.4 * down), layout="constrained")
-    grid = drawing.add_gridspec(
-        len(first) + down, ACROSS, height_ratios=[1.4] * len(first) + [1.0] * down
-    )
+    names = sorted(engine.unique(), key=bool)  # what is no engine comes first
+    first = names.count("")
+    down = -(-(len(names) - first) // ACROSS)
+    drawing = Figure(figsize=(10.4, 1.2 + 2.9 * first + 2.4 * down), layout="constrained")
+    grid = drawing.add_gridspec(first + down, ACROSS, height_ratios=[1.4] * first + [1.0] * down)
     panels: list[Axes] = []
-    for name in (*first, *engines):
-        place = len(panels) - len(first)
-        where = grid[len(first) + place // ACROSS, place % ACROSS] if name else grid[0, :]
-        scale = panels[len(first)] if name and place else None
+    named = []
+    for place, name in enumerate(names, start=-first):
+        where = grid[first + place // ACROSS, place % ACROSS] if name else grid[0, :]
+        scale = panels[first] if name and place else None
         axes = drawing.add_subplot(where, sharex=panels[0] if panels else None, sharey=scale)
         if name:
-            axes.tick_params(
-                labelleft=place % ACROSS == 0, labelbottom=place + ACROSS >= len(engines)
-            )
-        low = LEAST if name else LOWEST / 3.0
-        if not (name and place):  # the others share its scale
+            lowest = place + ACROSS >= len(names) - first
+            axes.tick_params(labelleft=place % ACROSS == 0, labelbottom=lowest)
+        if scale is None:  # the others share its scale
+            low = 1e-10 if name else LOWEST / 3.0
             axes.set(xscale="log", yscale="log", ylim=(low, TOP))
             error_scale(axes.yaxis, low, 1.0, 2 if name else 4)
-        _panel(axes, lines[engine == name], lines[engine != name])
+        named.append(_panel(axes, lines[engine == name], lines[engine != name]))
         cases = int(table.groupby("set")["cases"].max().sum())
         words = f"a failure or a wrong outcome in one of {cases} cases" * (not panels)
         strip_beyond(axes, EDGE, words)
-        axes.set_title(title_of(name) or OTHERS, fontsize=10.5, fontweight="bold")
+        title = title_of(name) or "Models, and solvers of ordinary differential equations"
+        axes.set_title(title, fontsize=10.5, fontweight="bold")
         panels.append(axes)
     drawing.supxlabel("run time of a case, set-up apart  [s]", fontsize=10)
     drawing.supylabel("median relative error of the peak, of the harder set", fontsize=10)
     exact = exact_cost(table)
     own = "" if np.isnan(exact) else f"; the exact solution takes {duration(exact)} a case"
     drawing.suptitle(f"Error against run time, from coarse to fine{own}", fontsize=12)
-    for axes, name in zip(panels, [*first, *engines], strict=True):
-        around(axes, list(_names(lines[engine == name])), 8.0)
+    for axes, of_it in zip(panels, named, strict=True):
+        around(axes, of_it)
     return drawing
 
 
-def _panel(axes: Axes, mine: pd.DataFrame, others: pd.DataFrame) -> None:
+def _panel(axes: Axes, mine: pd.DataFrame, others: pd.DataFrame) -> list[Name]:
+    """Draw some methods, pale behind them the others; return where their names belong."""
     behind = [line[["wall_s", "error"]].to_numpy() for _, line in others.groupby("method")]
-    axes.add_collection(LineCollection(behind, colors=PALE, linewidths=0.8, zorder=0))
+    axes.add_collection(LineCollection(behind, colors="#dcdcdc", linewidths=0.8, zorder=0))
+    names = []
     for name, line in mine.groupby("method", sort=False):
-        style = style_of(str(name))
+        style = method_style(str(name))
         size = 9.0 if style.marker == "*" else 3.2
         look = {**style.points(size), "linestyle": style.line or "none", "linewidth": style.width}
         axes.plot(line["wall_s"], line["error"], **look)
         lost = line[line["wrong"]]
         broken = {**style.points(4.0), "marker": "x", "markeredgewidth": 1.2}
         axes.plot(lost["wall_s"], [WRONG] * len(lost), **broken)
-    axes.grid(alpha=0.2)
-
-
-def _names(lines: pd.DataFrame) -> Iterator[Name]:
-    for method, line in lines.groupby("method", sort=False):
-        preset, _, dial = engine_in(str(method))[1].partition(", ")
+        preset, _, dial = engine_in(str(name))[1].partition(", ")
+        words = dial or (look_of(preset).short if preset else str(name))
         best = line.fillna({"error": WRONG}).sort_values("error").iloc[0]
-        words = dial or (look_of(preset).short if preset else str(method))
-        yield Name(words, best["wall_s"], best["error"], style_of(str(method)).colour)
+        names.append(Name(words, best["wall_s"], best["error"], style.colour))
+    axes.grid(alpha=0.2)
+    return names
 
 
 def draw_scenes(scenes: pd.DataFrame) -> Figure:
     """Draw what each thing put back into a scene costs and changes, a dot for each engine."""
     names, engines = list(scenes["scene"].unique()), list(scenes["engine"].unique())
-    drawing = Figure(figsize=(9.6, 1.6 + 0.4 * len(names)), layout="constrained")
-    costs, errors = drawing.subplots(1, 2, sharey=True)
+    drawing, (costs, errors) = sheet((9.6, 1.6 + 0.4 * len(names)), 1, 2, sharey=True)
     scenes = scenes.assign(cost=costs_of(scenes).where(scenes["error"].notna()))
     for place, engine in enumerate(engines):
         rows = scenes[scenes["engine"] == engine].set_index("scene").reindex(names)
         levels = np.arange(len(names)) + 0.7 * ((place + 0.5) / len(engines) - 0.5)
-        factor, look = rows["cost"], engine_style(engine, "").points(6.5)
+        factor, look = rows["cost"], style_of(engine).points(6.5)
         costs.hlines(levels, 1.0, factor, color=look["color"], linewidth=1.2)
         costs.plot(factor, levels, **look)
         errors.plot(rows["error"].abs().clip(lower=LOWEST), levels, **look, label=title_of(engine))
@@ -164,29 +151,25 @@ def draw_scenes(scenes: pd.DataFrame) -> Figure:
 def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
     """Draw the largest error over all cases against the run time of a case.
 
-    Parameters
-    ----------
-    along, published : DataFrame
-        The columns of work-precision.csv, of one engine and of the published ones.
+    The columns of work-precision.csv, of one engine and of the published ones.
     """
-    drawing = Figure(figsize=(9.0, 5.4), layout="constrained")
-    axes = drawing.subplots()
+    drawing, (axes,) = sheet((9.0, 5.4))
     axes.set(xscale="log", yscale="log", ylim=(1e-8, TOP))
     mine, others = joint(along), joint(published)
     others = others[~others["method"].isin(mine["method"])]
     best = {f"{name} {engine.best.name}" for name, engine in ENGINES.items()}
-    behind, names = Style(GREY, "-", ".", 0.9), []
+    behind, names = Style("#b5b5b5", "-", ".", 0.9), []
     for lines in (others, mine):
         for name, line in lines[lines["wall_s"] > 0.0].groupby("method", sort=False):
-            style = behind if lines is others else style_of(str(name))
+            style = behind if lines is others else method_style(str(name))
             right = (line["failed"] == 0) & np.isfinite(line["max_error"])
             error = line["max_error"].where(right, WRONG).clip(lower=LOWEST)
             look = {**style.points(), "linestyle": style.line or "none", "linewidth": style.width}
             axes.plot(line["wall_s"], error, **look)
-            last = int(np.argmax(line["wall_s"]))
-            colour = "#777777" if lines is others else style.colour
             if lines is mine or name in best:
+                last = int(np.argmax(line["wall_s"]))
                 at = float(line["wall_s"].iloc[last]), float(error.iloc[last])
+                colour = "#777777" if lines is others else style.colour
                 names.append(Name(method_title(str(name)), *at, colour))
     words = "a failure or a wrong outcome"
     if untimed := sorted(set(mine["method"]) - set(mine.loc[mine["wall_s"] > 0.0, "method"])):

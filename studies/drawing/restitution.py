@@ -10,11 +10,11 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.drawing.facets import cells, panels
-from studies.drawing.styles import engine_style, title_of
+from studies.drawing.facets import cells, panels, sheet
+from studies.drawing.styles import style_of, title_of
 
-LEAST, MOST = 1e-3, 1.0
-"""Deviations at the two ends of the colours."""
+LEAST = 1e-3
+"""Deviation at the lower end of the colours, which end at 1."""
 COLUMNS = {
     "off": "usual",
     "off_p_dt": "step",
@@ -29,13 +29,14 @@ TOP = 1.25
 
 def draw_deviations(corners: pd.DataFrame, rates: pd.DataFrame) -> Figure:
     """Draw the largest deviation of each way to ask, of the corner's speed and of the rate."""
-    drawing = Figure(figsize=(9.4, 1.5 + 0.24 * len(corners)), layout="constrained")
+    drawing, grid = sheet((9.4, 1.5 + 0.24 * len(corners)), 1, 2, sharey=True)
     titles = ("speed of the corner", "angular rate of the block")
-    grid = drawing.subplots(1, 2, sharey=True)
     for axes, table, title in zip(grid, (corners, rates), titles, strict=True):
         values = table[[*COLUMNS]].to_numpy(float)
-        image = cells(axes, np.where(np.isinf(values), MOST, values), LEAST, MOST,
-                      [*COLUMNS.values()])  # fmt: skip
+        image = cells(axes, np.where(np.isinf(values), 1.0, values), LEAST)
+        axes.set_xticks(range(len(COLUMNS)), [*COLUMNS.values()])
+        axes.xaxis.tick_top()
+        axes.tick_params(length=0)
         axes.set_title(title, fontsize=10.5)
         for (row, column), value in np.ndenumerate(values):
             words = "∞" if math.isinf(value) else "0" if value < LEAST else f"{value:.2g}"
@@ -55,7 +56,7 @@ def draw_strikes(rows: pd.DataFrame, corners: pd.DataFrame, best: pd.DataFrame) 
     plain = corners.drop_duplicates("engine")
     drawing, grid = panels(len(best), 4, (2.35, 2.5), 0.9, sharex=True, sharey=True)
     for axes, first, last in zip(grid, plain.itertuples(), best.itertuples(), strict=True):
-        mine, look = rows[rows["engine"] == last.engine], engine_style(str(last.engine), "")
+        mine, look = rows[rows["engine"] == last.engine], style_of(str(last.engine))
         axes.plot([0.0, 1.0], [0.0, 1.0], color="#999999", linewidth=0.8, label="as asked for")
         _way(axes, mine[mine["way"] == last.way], look.colour, "-", "best way, named above")
         usual = mine[(mine["way"] == first.way) & (mine["varied"] == "")]

@@ -5,27 +5,24 @@ from __future__ import annotations
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.drawing.facets import key, preset_dots
+from studies.drawing.facets import key, preset_dots, sheet
 from studies.drawing.labels import Name, around
 from studies.drawing.styles import title_of
-from studies.measures.presets import engine_of, in_order, look_of, preset_of
+from studies.measures.presets import look_of, preset_of
 
 LOWEST = 1e-7
 """Smaller errors are drawn here."""
-FLOORS = (
-    ("carried", "moved at once", "o", "#0072B2"),
-    ("carried_after_rest", "after 1 s of rest", "s", "#D55E00"),
-)
-"""Column -> how it is drawn."""
 
 
 def draw_floors(lines: pd.DataFrame) -> Figure:
     """Draw how far a floor carries a block: a row for each line of floor-summary.csv."""
-    figure = Figure(figsize=(8.0, 1.2 + 0.26 * len(lines)), layout="constrained")
-    axes = figure.subplots()
-    for column, label, marker, colour in FLOORS:
+    figure, (axes,) = sheet((8.0, 1.2 + 0.26 * len(lines)))
+    for column, label, marker, colour, fill in (
+        ("carried", "moved at once", "o", "#0072B2", "full"),
+        ("carried_after_rest", "after 1 s of rest", "s", "#D55E00", "none"),
+    ):
         axes.plot(100.0 * lines[column], range(len(lines)), marker, color=colour, label=label,
-                  markersize=8, markerfacecolor=colour if marker == "o" else "none")  # fmt: skip
+                  markersize=8, fillstyle=fill)  # fmt: skip
     pairs = zip(lines["engine"].astype(str), lines["floor"], strict=True)
     names = [f"{title_of(engine)}: {floor}" for engine, floor in pairs]
     axes.set_yticks(range(len(lines)), names)
@@ -40,15 +37,9 @@ def draw_floors(lines: pd.DataFrame) -> Figure:
 def draw_times(lines: pd.DataFrame, title: str, along: str) -> Figure:
     """Draw for each engine and preset a line from the median to the largest error at its time.
 
-    Parameters
-    ----------
-    lines : DataFrame
-        source, wrong (outcomes, counted beside the name), median_error, largest_error, ms.
-    title, along : str
-        What stands above, and along the axis of errors.
+    `along` stands along the axis of errors; wrong outcomes are counted beside a name.
     """
-    figure = Figure(figsize=(8.0, 4.6), layout="constrained")
-    axes = figure.subplots()
+    figure, (axes,) = sheet((8.0, 4.6))
     axes.set(xscale="log", yscale="log", xlabel="run time of a case  [ms]", ylabel=along)
     names = []
     for row in lines.dropna(subset="median_error").to_dict("records"):
@@ -57,9 +48,9 @@ def draw_times(lines: pd.DataFrame, title: str, along: str) -> Figure:
         axes.plot([row["ms"]] * 2, [low, high], color=colour, linewidth=1.5, alpha=0.5)
         axes.plot(row["ms"], low, "o", color=colour, markersize=6)
         wrong = f", {row['wrong']:.0f} wrong" if row["wrong"] else ""
-        names.append(Name(title_of(engine_of(row["source"])) + wrong, row["ms"], low, colour))
+        names.append(Name(title_of(row["source"]) + wrong, row["ms"], low, colour))
     axes.grid(alpha=0.25)
-    key(figure, preset_dots(in_order(map(preset_of, lines["source"]))), 4, fontsize=10)
+    key(figure, preset_dots(map(preset_of, lines["source"])), 4, fontsize=10)
     axes.set_title(f"{title}: from the median error (dot) to the largest", fontsize=11)
     around(axes, names)
     return figure

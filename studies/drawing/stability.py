@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from studies.drawing.facets import key
-from studies.drawing.styles import engine_title
+from studies.drawing.facets import key, sheet
+from studies.drawing.styles import title_of
 from studies.measures.presets import look_of, preset_of
 from studies.measures.verdicts import ACCEPTED, SENTENCES, Verdict
 
@@ -51,19 +51,18 @@ WORDS = {
     "contact of 1e-5/p": "stiff contact, time 1e-5/p",
 }
 """Name of a case -> what stands beside its row, where the name needs words."""
-ACROSS, MANY, NAMES_PT = 22, 14, 72.0
-"""Methods side by side at most, more stand in a panel below; how many have narrow columns; and what
-their names take [points]."""
+ACROSS = 22
+"""Methods side by side at most; more stand in a panel below."""
 
 
 def draw_matrix(rows: pd.DataFrame, title: str) -> Figure:
     """Draw the cases as rows and the methods as columns, those of a preset side by side."""
     groups, cases = _groups(rows["source"].unique()), rows.drop_duplicates("case")
     most = max(sum(map(len, panel.values())) for panel in groups)
-    width = 4.2 + (0.3 if most > MANY else 0.5) * most
+    width = 4.2 + (0.3 if most > 14 else 0.5) * most
     size = (max(width, 7.5), (0.235 * len(cases) + 1.7) * len(groups) + 1.5)
-    drawing = Figure(figsize=size, layout="constrained")
-    for axes, panel in zip(drawing.subplots(len(groups), squeeze=False).flat, groups, strict=True):
+    drawing, grid = sheet(size, len(groups))
+    for axes, panel in zip(grid, groups, strict=True):
         _panel(axes, rows, cases, panel)
         axes.set_xlim(0, most)
     drawing.suptitle(fill(title, 75), fontsize=12)
@@ -116,7 +115,7 @@ def _panel(
             heading, colour = look_of(preset).short, look_of(preset).colour
         if len(groups[preset]) < 4:
             heading = heading.replace(" ", "\n")
-        axes.annotate(heading, (end - 0.5 * len(groups[preset]), 0.0), (0.0, NAMES_PT),
+        axes.annotate(heading, (end - 0.5 * len(groups[preset]), 0.0), (0.0, 72.0),
                       textcoords="offset points", ha="center", va="bottom", fontsize=9.5,
                       weight="bold", color=colour)  # fmt: skip
     line: dict[str, Any] = {"color": "#666666", "lw": 0.8, "clip_on": False}
@@ -133,7 +132,7 @@ def _panel(
 def _name_methods(axes: Axes, rows: pd.DataFrame, sources: list[str], level: int) -> None:
     """Name each method above its cases; write below how many are right, of those valid."""
     axes.xaxis.tick_top()
-    labels = [engine_title(source).replace("average-acc", "average-\nacc") for source in sources]
+    labels = [title_of(source).replace("average-acc", "average-\nacc") for source in sources]
     axes.set_xticks([i + 0.5 for i in range(len(sources))], labels, fontsize=8.5, ha="left",
                     rotation=70, rotation_mode="anchor", linespacing=0.9)  # fmt: skip
     valid = rows["verdict"] != Verdict.INVALID.value

@@ -38,7 +38,6 @@ STYLES = {
     "rk4": Style("#56B4E9", "-", width=1.0),
     "average-acceleration": Style("#E69F00", "--", width=1.0),
 }
-OTHER = Style("#777777", marker="D")
 
 # from Tol's muted palette, but for the first two; an engine has a marker of its own besides,
 # because no eleven colours stay apart for every reader; with 9 markers they make 99 looks
@@ -51,22 +50,17 @@ ENGINE_MARKERS = "o^sDvPXph"
 
 def look_at(place: int) -> tuple[str, str]:
     """Return the colour and the marker of the engine at a place among all."""
-    return (
-        ENGINE_COLOURS[place % len(ENGINE_COLOURS)],
-        ENGINE_MARKERS[place % len(ENGINE_MARKERS)],
-    )
-
-
-def engine_style(engine: str, preset: str) -> Style:
-    """Return colour and marker of an engine, by its place among all, and the preset's fill."""
-    colour, marker = look_at(list(ENGINES).index(engine))
-    return Style(colour, marker=marker, fill=look_of(preset).fill)
+    colours, markers = len(ENGINE_COLOURS), len(ENGINE_MARKERS)
+    return ENGINE_COLOURS[place % colours], ENGINE_MARKERS[place % markers]
 
 
 def style_of(source: str) -> Style:
-    """Return the style of a source; one without a style of its own is grey."""
+    """Return the style of a source: an engine's by its place among all, filled by its preset."""
     plain, _, preset = source.partition(":")
-    return engine_style(plain, preset) if plain in ENGINES else STYLES.get(plain, OTHER)
+    if plain not in ENGINES:
+        return STYLES.get(plain, Style("#777777", marker="D"))
+    colour, marker = look_at(list(ENGINES).index(plain))
+    return Style(colour, marker=marker, fill=look_of(preset).fill)
 
 
 def line_of(source: str) -> str:
@@ -74,20 +68,16 @@ def line_of(source: str) -> str:
     return style_of(source).line or look_of(source.partition(":")[2]).line
 
 
-def title_of(engine: str) -> str:
-    """Return an engine's name as its makers spell it; that of any other source as it is."""
+def title_of(source: str) -> str:
+    """Return the name of a source without its preset, an engine's as its makers spell it."""
+    engine = engine_of(source)
     return ENGINES[engine].title if engine in ENGINES else engine
-
-
-def engine_title(source: str) -> str:
-    """Return the title of the engine that a source is a preset of."""
-    return title_of(engine_of(source))
 
 
 def name_of(source: str) -> str:
     """Return how a source is called in a picture: an engine by its title, with its preset."""
     _, colon, preset = source.partition(":")
-    return engine_title(source) + (f", {look_of(preset).short}" if colon else "")
+    return title_of(source) + (f", {look_of(preset).short}" if colon else "")
 
 
 def full_name(source: str) -> str:

@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engines.declaration import AT_REST
-from studies.drawing.facets import STRIP, cells, dot, error_scale, key, preset_dots, rows
+from studies.drawing.facets import STRIP, cells, dot, error_scale, key, preset_dots, rows, sheet
 from studies.drawing.labels import Name, beside
-from studies.drawing.styles import engine_title, line_of, name_of, style_of, title_of
+from studies.drawing.styles import line_of, name_of, style_of, title_of
 from studies.kit.say import out_of, part
 from studies.measures.presets import in_order, is_engine, look_of, preset_of
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wrong_in
@@ -22,12 +22,10 @@ TOP, LINE = 1.2, 0.085
 """Upper end of the scale of abs(theta)/theta_cr, and the height of a line in the band above it."""
 FLOOR, CEILING = 1e-8, 1e1
 """Ends of the scale of errors."""
-LEAST, MOST = 1e-6, 1.0
-"""Ends of the colours of errors along the frequency."""
+LEAST = 1e-6
+"""Lower end of the colours of errors along the frequency."""
 MARKERS = {FALL: "s", REST: "_", NO_ANSWER: "x"}
 """Kind of a wrong outcome -> its mark in a strip."""
-ROW, APART = 0.125, 0.76
-"""Height of a preset in a row of an engine [in], and part of the row where presets are spread."""
 
 
 def draw_sweep(rows: pd.DataFrame) -> Figure:
@@ -54,7 +52,7 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
     error_scale(grid[1, 0].yaxis, FLOOR, CEILING)
     for axes in grid.flat:
         axes.grid(alpha=0.25)
-    _name_the_lines(grid[0, -1], grid[1, -1], panel, sources)
+    _name_the_lines(upper, lower, panel, sources)
     pulse = f"{first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
     narrowest, *others = (f"B = {width_m:g} m" for width_m in widths)
     pale = f"; pale, and the same by similarity: {', '.join(others)}" if others else ""
@@ -115,12 +113,11 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     """Draw errors and run times of a table of presets: engines as rows, presets as dots."""
     table = table[table["preset"] != AT_REST]  # a variant, which the table has
     engines, presets = list(dict.fromkeys(table["engine"])), in_order(table["preset"])
-    size = (8.6, 1.9 + ROW * len(presets) * len(engines))
-    drawing = Figure(figsize=size, layout="constrained")
-    errors, times = drawing.subplots(1, 2, sharey=True, width_ratios=(1.7, 1.0))
+    size = (8.6, 1.9 + 0.125 * len(presets) * len(engines))
+    drawing, (errors, times) = sheet(size, 1, 2, sharey=True, width_ratios=(1.7, 1.0))
     for line in table.to_dict("records"):
         place = presets.index(str(line["preset"])) - 0.5 * (len(presets) - 1)
-        y = engines.index(str(line["engine"])) + APART * place / len(presets)
+        y = engines.index(str(line["engine"])) + 0.76 * place / len(presets)
         colour = look_of(str(line["preset"])).colour
         errors.plot([line["median"], line["max"]], [y, y], color=colour, lw=2.4, alpha=0.45)
         errors.plot(line["median"], y, "|", color=colour, markersize=7)
@@ -174,8 +171,7 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
         for axes, aspect in zip(line, aspects, strict=True):
             shown = _strips(axes, group[group["aspect"] == aspect], sources)
             axes.set_yticks([])
-        names = [engine_title(source) for source in sources]
-        line[0].set_yticks(range(len(names)), names, fontsize=8.5)
+        line[0].set_yticks(range(len(sources)), map(title_of, sources), fontsize=8.5)
         wrong = out_of((group["wrong"] != "").sum(), len(group))
         look = look_of(preset)
         line[0].set_title(f"{look.short}: {wrong} outcomes wrong", loc="left",
@@ -183,7 +179,7 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
     for axes, aspect in zip(grid[-1], aspects, strict=True):
         axes.set_xlabel(f"ω/p at H/B = {aspect:g}", fontsize=10)
     bar = drawing.colorbar(shown, ax=grid, extend="both", aspect=40, pad=0.015)
-    error_scale(bar.ax.yaxis, LEAST, MOST, 1)
+    error_scale(bar.ax.yaxis, LEAST, 1.0, 1)
     bar.ax.set_title("error", fontsize=9)
     median = {name: part(groups[name]["error"].abs().median()) for name in presets}
     words = [f"{median[name]} {look_of(name).words}" for name in (presets[0], presets[-1])]
@@ -197,13 +193,11 @@ def draw_by_preset(rows: pd.DataFrame) -> Figure:
 
 
 def _strips(axes: Axes, mine: pd.DataFrame, sources: list[str]) -> Any:
-    size = mine["error"].abs()
-    table = mine.assign(size=size).pivot_table(
-        index="source", columns="omega_over_p", values="size", aggfunc="max", dropna=False
-    )
+    sizes = mine.assign(size=mine["error"].abs()).groupby(["source", "omega_over_p"])["size"].max()
     frequencies = sorted(mine["omega_over_p"].unique())
+    table = sizes.unstack().reindex(index=sources, columns=frequencies)
     axes.set_facecolor(STRIP)
-    shown = cells(axes, table.reindex(index=sources, columns=frequencies), LEAST, MOST)
+    shown = cells(axes, table.to_numpy(), LEAST)
     for kind, look in MARKERS.items():
         wrong = mine[mine["wrong"] == kind]
         x = np.searchsorted(frequencies, wrong["omega_over_p"])

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.drawing.facets import error_scale, panels, rows
-from studies.drawing.styles import LOWEST, engine_title, name_of, style_of
+from studies.drawing.styles import LOWEST, name_of, style_of, title_of
 from studies.kit.say import part
 from studies.measures.differences import sensitivity_of
 from studies.measures.presets import in_order, in_words, preset_of
@@ -20,8 +20,6 @@ BANDS = (0.0, 3.0, 10.0, 100.0, inf)
 """Where bands of the sensitivity S end."""
 LEAST, MARKED, MOST = 0.1, 10.0, 1e4
 """Ends of the scale of factors, and the factor at which engines are named with their part."""
-LINE = 0.062
-"""Distance of two names over the height of a panel."""
 
 
 def draw_conditioning(errors: pd.DataFrame) -> Figure:
@@ -46,7 +44,12 @@ def draw_conditioning(errors: pd.DataFrame) -> Figure:
         "or of an impact's velocity ratio",
         fontsize=10,
     )
-    drawing.suptitle(_title(list(bands.items())), fontsize=12)
+    ends, most = [*bands], [part(cases["size"].max()) for cases in bands.values()]
+    title = f"Peaks are off by up to {most[0]}" if len(sizes) else "No case that both survive"
+    if len(ends) > 1:
+        words = f"{most[0]} below {ends[0][1]:g}, {most[-1]} from {ends[-1][0]:g} on"
+        title = f"Errors grow with the sensitivity S: up to {words}"
+    drawing.suptitle(title, fontsize=12)
     return drawing
 
 
@@ -54,27 +57,14 @@ def _boxes(axes: Axes, cases: pd.DataFrame, sources: list[str]) -> None:
     rows(axes, [name_of(source) for source in sources], 10.0)
     for place, source in enumerate(sources):
         size = cases.loc[cases["source"] == source, "size"].clip(lower=LOWEST)
-        if size.empty:
-            continue
-        colour = style_of(source).colour
-        axes.boxplot(
-            size, positions=[place], orientation="horizontal", widths=0.55, whis=(0, 100),
-            patch_artist=True, manage_ticks=False, medianprops={"color": "black"},
-            boxprops={"facecolor": colour, "alpha": 0.6, "edgecolor": colour},
-            whiskerprops={"color": colour}, capprops={"color": colour},
-        )  # fmt: skip
-
-
-def _title(bands: list[tuple[tuple[float, float], pd.DataFrame]]) -> str:
-    ((_, low), calm), ((high, _), wild) = bands[0], bands[-1]
-    if calm.empty:
-        return "No case that both survive"
-    least, most = (part(cases["size"].max()) for cases in (calm, wild))
-    if calm is wild:
-        return f"Peaks are off by up to {least}"
-    return (
-        f"Errors grow with the sensitivity S: up to {least} below {low:g}, {most} from {high:g} on"
-    )
+        if len(size):
+            colour = style_of(source).colour
+            axes.boxplot(
+                size, positions=[place], orientation="horizontal", widths=0.55, whis=(0, 100),
+                patch_artist=True, manage_ticks=False, medianprops={"color": "black"},
+                boxprops={"facecolor": colour, "alpha": 0.6, "edgecolor": colour},
+                whiskerprops={"color": colour}, capprops={"color": colour},
+            )  # fmt: skip
 
 
 def draw_estimates(lines: pd.DataFrame) -> Figure:
@@ -91,12 +81,10 @@ def draw_estimates(lines: pd.DataFrame) -> Figure:
         axes.grid(alpha=0.25)
     grid[0].set_ylabel("part of the errors that are smaller")
     if bounded:
-        ends = dict.fromkeys(part(end(bounded)) for end in (min, max))
-        drawing.suptitle(
-            f"{MARKED:g} times the difference to half the step bounds {' to '.join(ends)} of an "
-            "engine's errors",
-            fontsize=11,
-        )
+        ends = " to ".join(dict.fromkeys((part(min(bounded)), part(max(bounded)))))
+        words = f"bounds {ends} of an engine's errors"
+        title = f"{MARKED:g} times the difference to half the step {words}"
+        drawing.suptitle(title, fontsize=11)
     return drawing
 
 
@@ -112,9 +100,9 @@ def _parts(axes: Axes, lines: pd.DataFrame) -> list[float]:
             parts = np.arange(len(over) + 1) / len(over)
             axes.step([LEAST, *np.maximum(over, LEAST)], parts, where="post", color=colour)
             within = float((over <= MARKED).mean())
-            names.append((within, f"{engine_title(str(source))} {part(within)}", colour))
+            names.append((within, f"{title_of(str(source))} {part(within)}", colour))
     # under the lines, which all end above
     for place, (_, name, colour) in enumerate(sorted(names)):
-        axes.text(0.96, 0.04 + LINE * place, name, transform=axes.transAxes, ha="right",
+        axes.text(0.96, 0.04 + 0.062 * place, name, transform=axes.transAxes, ha="right",
                   color=colour, fontsize=9)  # fmt: skip
     return [within for within, _, _ in names]

@@ -2,33 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
 if TYPE_CHECKING:
-    from studies.kit.study import Study
+    from studies.kit.study import Study, Tables
 
 
 @dataclass(frozen=True, kw_only=True)
 class Part:
-    """A folder of results, and the command that fills it.
+    """A folder of results, and the command that fills it, with its further arguments.
 
-    Attributes
-    ----------
-    folder, name : str
-        Of the folder, and of the command.
-    title : str
-        What it answers, where one study fills several folders.
-    quick, full : tuple of str
-        Further arguments of the command.
-    weaker : str
-        What the quick form lacks.
+    It has a title where one study fills several folders; `weaker` is what its quick form lacks.
     """
 
     folder: str
@@ -44,17 +34,26 @@ class Part:
         study: Study = import_module(f"studies.{self.name}").STUDY
         return study
 
-    @property
-    def question(self) -> str:
-        """What it answers."""
-        return self.title or self.study.question
-
     def words(self, out: Path | str, full: bool) -> list[str]:
         """Return the command line after `rocking`."""
         return [self.name, "--out", str(out), *(self.full if full else self.quick)]
 
+    def command(self, full: bool) -> str:
+        """Return the whole command line."""
+        return " ".join(["rocking", *self.words("DIR", full)])
 
-def statements(tables: Mapping[str, pd.DataFrame]) -> list[tuple[bool, str]]:
+    def found(self, tables: Tables, full: bool) -> dict[str, Any]:
+        """Return what every page says of its tables."""
+        return {
+            "folder": self.folder,
+            "question": self.title or self.study.question,
+            "claim": self.study.finding(tables),
+            "command": self.command(full),
+            "statements": statements(tables),
+        }
+
+
+def statements(tables: Tables) -> list[tuple[bool, str]]:
     """Return whether each statement that a study tested holds, and for which sources."""
     found: dict[tuple[bool, str], list[str]] = {}
     for line in tables.get("findings", pd.DataFrame()).to_dict("records"):

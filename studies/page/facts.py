@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -30,10 +29,6 @@ Line: TypeAlias = "Mapping[Any, Any] | pd.Series[Any]"
 Table: TypeAlias = tuple[list[str], list[list[str]]]
 """Heads, and the cells of each row."""
 TITLES = {name: ENGINES[name].title for name in OWN}
-FIRST = "first.json"
-"""Provenance of the sweep in another folder, where it was the first run after an installation."""
-TRIED = 2
-"""Single settings that are shown of each engine, of all that were tried."""
 
 
 def presets(published: Path) -> pd.DataFrame:
@@ -79,16 +74,16 @@ def in_scene(published: Path, name: str) -> Table:
     """Return the summary of a scene's engines, its numbers in words."""
     lines = table_in(published / "scenes", f"{name}-summary")
     rows = [
-        ["–" if isinstance(cell, float) and math.isnan(cell) else _cell(str(head), cell)
-         for head, cell in line.items()]
-        for line in lines.to_dict("records")
-    ]  # fmt: skip
+        [_cell(str(head), cell) for head, cell in line.items()] for line in lines.to_dict("records")
+    ]
     return [str(head).replace("_", " ") for head in lines], rows
 
 
 def _cell(head: str, value: Any) -> str:
     if not isinstance(value, float):
         return f"`{value}`" if head == "source" else str(value)
+    if math.isnan(value):
+        return "–"
     return part(value) if head.endswith(("error", "rest", "carried")) else f"{value:.3g}"
 
 
@@ -99,9 +94,11 @@ def advised(published: Path) -> list[list[str]]:
         best = group[group["message"] == ""].nsmallest(1, "wall_s")
         cells = ["none", "–", "–"]
         for line in best.to_dict("records"):
+            fixed = ENGINES[line["engine"]].preset(line["preset"]).stepping is Stepping.FIXED
+            how = "p dt =" if fixed else "accuracy"
             known = f"{line['random_off']:.0f} of {line['random_cases']:.0f}"
             cells = [
-                _setting(line),
+                f"`{line['engine']}:{line['preset']}`, {how} {line['value']}",
                 cost_text(line["wall_s"], line["runs"]),
                 known if line["random_cases"] else "–",
             ]
@@ -109,15 +106,10 @@ def advised(published: Path) -> list[list[str]]:
     return rows
 
 
-def _setting(line: Line) -> str:
-    lands = ENGINES[line["engine"]].preset(line["preset"]).stepping is not Stepping.FIXED
-    how = f"accuracy {line['value']}" if lands else f"p dt = {line['value']}"
-    return f"`{line['engine']}:{line['preset']}`, {how}"
-
-
 def made(published: Path) -> dict[str, str]:
     """Return on what machine, with what versions and when the paper's cases were run."""
-    sweep, first = provenance_of(published / "sweep"), published / "sweep" / FIRST
+    # the sweep in another folder, where it was the first run after an installation
+    sweep, first = provenance_of(published / "sweep"), published / "sweep" / "first.json"
     others = [json.loads(first.read_text(encoding="utf-8"))] if first.is_file() else []
     versions = engines_of(provenance_of(published / "presets") or sweep)
     packages = [name for one in OWN for name in ENGINES[one].packages if name in versions]
@@ -170,7 +162,6 @@ def beside_own() -> str:
     return "; ".join(said)
 
 
-@cache
 def _variants(published: Path, name: str = "variants") -> pd.DataFrame:
     return table_in(published / "contact", name, "factor", "level", "trap")
 
@@ -202,28 +193,21 @@ def helps(published: Path) -> Table:
     price = {name: _prices(lines, name) for name in engines}
     helped = {name: ENGINES[name].best.helped_by for name in engines}
     rows = [["**All of it**", *(f"**{price[name].get('', '-')}**" for name in engines)]]
-    rows += [
-        [
-            capital(each.value),
-            *(
-                price[name].get(each.name, "yes") if each in helped[name] else "–"
-                for name in engines
-            ),
+    for each in Help:
+        cells = [
+            price[name].get(each.name, "yes") if each in helped[name] else "–" for name in engines
         ]
-        for each in Help
-        if any(each in given for given in helped.values())
-    ]
+        if {*cells} != {"–"}:
+            rows.append([capital(each.value), *cells])
     return ["landing without", *(TITLES[name] for name in engines)], rows
 
 
 def _prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
     best = ENGINES[engine].best.name
     mine = lines[(lines["engine"] == engine) & (lines["preset"] == best)]
-    asked = mine[mine["factor"].isin(["", LEFT_OUT])].to_dict("records")
-    words = {
-        line["level"].upper() if line["factor"] else "": _errors(line, ("max_error",))
-        for line in asked
-    }
+    words = {}
+    for line in mine[mine["factor"].isin(["", LEFT_OUT])].to_dict("records"):
+        words[line["level"].upper() if line["factor"] else ""] = _errors(line, ("max_error",))
     equal = variant_of(lines, engine, BEST)
     return words | ({} if equal is None else {"STEPS": _errors(equal, ("max_error",))})
 
@@ -249,11 +233,13 @@ def rules(published: Path) -> Iterator[tuple[str, str, str, str]]:
 def objections(published: Path) -> Iterator[tuple[str, ...]]:
     """Yield an engine's title and what was tried in its favour, with the errors beside it."""
     lines, own = presets(published), _variants(published, "own-steps")
+    lines = lines.rename(columns={"median": "median_error", "max": "max_error"})
+    lines = lines.assign(failed=0, wrong=lines["cases"] - lines["right"])
     for engine in OWN:
         mine = {line["preset"]: line for _, line in lines[lines["engine"] == engine].iterrows()}
         for name in (RECOMMENDED, AT_REST):
             if {name, DEFAULT} <= mine.keys():
-                pair = [_of_preset(mine[each]) for each in (DEFAULT, name)]
+                pair = [_errors(mine[each]) for each in (DEFAULT, name)]
                 yield TITLES[engine], look_of(name).short, f"{mine[name]['cases']} cases", *pair
         plain = variant_of(own, engine, DEFAULT)
         if plain is not None:
@@ -263,21 +249,13 @@ def objections(published: Path) -> Iterator[tuple[str, ...]]:
                 yield TITLES[engine], setting, cases, _errors(plain), _errors(line)
 
 
-def _of_preset(line: Line) -> str:
-    wrong = line["cases"] - line["right"]
-    errors = f"{part(line['median'])}, at most {part(line['max'])}"
-    return errors + (f", {wrong} of {line['cases']} wrong" if wrong else "")
-
-
 def _better(lines: pd.DataFrame, engine: str, plain: Line) -> list[dict[Any, Any]]:
-    """Return the single settings that lower the median error most without more wrong outcomes."""
+    """Return the two single settings that lower the median error most, and get no more wrong."""
     mine = (lines["engine"] == engine) & (lines["preset"] == DEFAULT)
     varied = lines[mine & (lines["factor"] != "") & (lines["trap"] == "")]
-    wrong = varied["failed"] + varied["wrong"]
-    better = varied[
-        (wrong <= plain["failed"] + plain["wrong"])
-        & (varied["median_error"] < plain["median_error"])
-    ].sort_values("median_error")
+    right = varied["failed"] + varied["wrong"] <= plain["failed"] + plain["wrong"]
+    better = varied[right & (varied["median_error"] < plain["median_error"])]
+    better = better.sort_values("median_error")
     alike = better["median_error"].map("{:.3e}".format)  # two names of one thing
     best: pd.DataFrame = better[~alike.duplicated() & ~better["factor"].duplicated()]
-    return best.head(TRIED).to_dict("records")
+    return best.head(2).to_dict("records")

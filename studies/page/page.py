@@ -20,7 +20,7 @@ from studies.kit.store import engines_of, provenance_of
 from studies.kit.tables import table_in, write_text
 from studies.measures.presets import in_order, in_words
 from studies.measures.wrongness import KINDS, MEANINGS, WORDS, in_kinds
-from studies.page.chapters import CHAPTERS, PARTS, Part, statements
+from studies.page.chapters import CHAPTERS, PARTS, Part
 from studies.page.facts import presets
 from studies.sources.registry import resolve
 from studies.sweep import STUDY as SWEEP
@@ -29,31 +29,12 @@ GOOD, BAD = 1e-3, 0.1
 """Largest errors below which, and above which, a tile is marked."""
 SHOWN = 20
 """Rows of a table, and failures, that are shown; files hold all of them."""
-LARGE = 100_000
-"""Bytes up to which a figure is held as its lines; beyond, as points where that is less."""
-DIGITS, OVERTURNED = 5, -1.0
-"""Of a peak in the page, and what stands in its place; a case that failed has None."""
 AXES = ("half_cycles", "aspect", "width_m", "onsets", "omega_over_p")
 """Columns of the grid of cases, the last running fastest."""
 
 
 def write_page(path: Path, folder: Path, full: bool) -> None:
-    """Write the page about the results of all studies.
-
-    Parameters
-    ----------
-    path : Path
-        The HTML file; it holds its pictures itself.
-    folder : Path
-        With a folder inside for each of PARTS, as `rocking report` fills it.
-    full : bool
-        Whether the full commands filled it, or the quick ones.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    """
+    """Write the page about a folder that holds one for each of PARTS, filled in full or not."""
     environment = Environment(loader=PackageLoader("studies.page", "."), autoescape=True)
     chapters = {
         title: [_section(one, folder / one.folder, full) for one in parts]
@@ -64,21 +45,14 @@ def write_page(path: Path, folder: Path, full: bool) -> None:
         made=_made(folder / PARTS[0].folder),
         full=full,
         shown=SHOWN,
-        cases=engine_cases(folder),
+        tried=engine_cases(folder),
         **first_sight(folder),
     )
     write_text(path, text)
 
 
 def first_sight(folder: Path) -> dict[str, Any]:
-    """Return the verdict, and a tile for each engine and preset that the folder holds.
-
-    Returns
-    -------
-    dict
-        verdict; wrong: what each kind of wrong outcome counts; presets: names; tiles: title of an
-        engine -> a tile for each of these, or None.
-    """
+    """Return the verdict, and for each engine a tile, or None, for each preset that there is."""
     lines = presets(folder)
     if lines.empty:
         return {"verdict": ""}
@@ -112,14 +86,10 @@ def _section(one: Part, folder: Path, full: bool) -> dict[str, Any]:
     study, tables = one.study, one.study.read(folder)
     drawn = study.figures(tables)
     return {
-        "folder": one.folder,
-        "question": one.question,
-        "claim": study.finding(tables),
-        "statements": statements(tables),
-        "full_command": " ".join(["rocking", *one.words("DIR", True)]),
+        **one.found(tables, full),
+        "full_command": one.command(True),
         "how": study.help,
         "weaker": one.weaker or study.quick,
-        "command": " ".join(["rocking", *one.words("DIR", full)]),
         "pictures": [(study.caption_of(name), embedded(each)) for name, each in drawn.items()],
         "tables": [
             (name, len(rows), *table(rows.head(SHOWN)))
@@ -134,14 +104,9 @@ def embedded(drawing: Figure) -> str:
     lines, points = io.BytesIO(), io.BytesIO()
     lay_out(drawing)
     drawing.savefig(lines, format="svg", metadata={"Date": None})
-    if lines.tell() > LARGE:
+    if lines.tell() > 100_000:  # points may be less
         write_points(drawing, points)
-    if 0 < points.tell() < lines.tell():
-        return _address("png", points)
-    return _address("svg+xml", lines)
-
-
-def _address(kind: str, image: io.BytesIO) -> str:
+    kind, image = ("png", points) if 0 < points.tell() < lines.tell() else ("svg+xml", lines)
     return f"data:image/{kind};base64," + base64.b64encode(image.getvalue()).decode()
 
 
@@ -185,27 +150,23 @@ def _made(folder: Path) -> list[tuple[str, str]]:
 def engine_cases(folder: Path) -> dict[str, Any]:
     """Return the peaks of the exact solution and of engines on a grid of pulses and blocks.
 
-    Returns
-    -------
-    dict
-        Of each of AXES its values; peaks: source -> the peaks of all cases, in their order; judged:
-        of each case 1, or 0 where the block would slide or lift off; rests: for how long all is at
-        rest before the pulse of each [s]; written: the sources that `rocking export` writes out.
+    Of each of AXES its values; peaks: source -> the peaks of all cases in their order, -1 where it
+    overturns, None where it failed; judged: of each case 1, or 0 where the block would slide or
+    lift off; rests: for how long all is at rest before the pulse [s]; written: the sources that
+    `rocking export` writes out.
     """
     rows = table_in(folder / "defaults", "defaults")
     if rows.empty:
         return {"peaks": {}}
     rows = rows.assign(
         half_cycles=rows["pulse"].map(PULSES),
-        peak=rows["peak_ratio"].mask(rows["outcome"] == "overturned", OVERTURNED),
+        peak=rows["peak_ratio"].mask(rows["outcome"] == "overturned", -1.0),
     )
     axes = {name: sorted(rows[name].unique().tolist()) for name in AXES}
     order = pd.MultiIndex.from_product(list(axes.values()), names=AXES)
     wide = rows.pivot(index=list(AXES), columns="source", values="peak").reindex(order)
     found = {
-        str(name): [
-            float(f"{peak:.{DIGITS}g}") if math.isfinite(peak) else None for peak in wide[name]
-        ]
+        str(name): [float(f"{peak:.5g}") if math.isfinite(peak) else None for peak in wide[name]]
         for name in rows["source"].unique()
     }
     slides = rows[rows["verdict"] == "invalid"].drop_duplicates(list(AXES))

@@ -25,7 +25,7 @@ from studies.measures.published import dictionary
 from studies.measures.samples import samples
 from studies.measures.wrongness import MEANINGS, WORDS, in_kinds
 from studies.page import facts
-from studies.page.chapters import CHAPTERS, Part, published_parts, statements
+from studies.page.chapters import CHAPTERS, Part, published_parts
 from studies.sources.registry import core_sources
 from studies.sweep import STUDY as SWEEP
 
@@ -40,8 +40,6 @@ PAGES = {
 BLOCK = RigidBlock(width=0.5, height=1.5)
 PULSE = SinePulse(amplitude=0.4 * GRAVITY, omega=6.2832, half_cycles=2)
 SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
-SAMPLES, DIGITS = 401, 9
-"""Of the histories in the first picture."""
 
 
 def command(*, root: Path = Path()) -> int:
@@ -78,7 +76,7 @@ def command(*, root: Path = Path()) -> int:
 def measure_hero() -> pd.DataFrame:
     """Return the histories of one block under one pulse, from the sources of the first picture."""
     window = free_rocking_window(BLOCK, PULSE)
-    times = np.linspace(0.0, window, SAMPLES)
+    times = np.linspace(0.0, window, 401)
     case = Question(system=BLOCK, motion=PULSE, duration=window, times=times)
     parts = []
     for name in SOURCES:
@@ -86,7 +84,7 @@ def measure_hero() -> pd.DataFrame:
         labels = {"source": name, "peak_ratio": response.peak_ratio}
         found = samples(response, BLOCK, PULSE, labels)
         parts.append(found[["source", "outcome", "peak_ratio", "time_s", "theta_ratio"]])
-    return pd.concat(parts, ignore_index=True).round({"time_s": DIGITS, "theta_ratio": DIGITS})
+    return pd.concat(parts, ignore_index=True).round({"time_s": 9, "theta_ratio": 9})
 
 
 def summary(histories: pd.DataFrame) -> pd.DataFrame:
@@ -107,18 +105,10 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[object]] = ()) -> str:
     return "\n".join(map(row, (heads, ["---"] * len(heads), *rows)))
 
 
-def in_words_of(one: Part, published: Path) -> dict[str, Any]:
-    """Return what the page of the published results says of a part, and its files."""
-    folder, study = published / one.folder, one.study
-    tables = study.read(folder)
-    return {
-        "folder": one.folder,
-        "question": one.question,
-        "claim": study.finding(tables),
-        "command": " ".join(["rocking", *one.words("DIR", full=True)]),
-        "pictures": [(p.name, study.caption_of(p.stem)) for p in sorted(folder.glob("*.png"))],
-        "statements": statements(tables),
-    }
+def in_words_of(one: Part, folder: Path) -> dict[str, Any]:
+    """Return what the pages say of a part, and its pictures."""
+    pictures = [(it.name, one.study.caption_of(it.stem)) for it in sorted(folder.glob("*.png"))]
+    return {**one.found(one.study.read(folder), full=True), "pictures": pictures}
 
 
 def pages(root: Path) -> dict[Path, str]:
@@ -132,15 +122,13 @@ def pages(root: Path) -> dict[Path, str]:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters |= {
-        each.__name__: each for each in (capital, duration, in_kinds, in_words, part, row)
-    }
-    environment.filters["once"] = facts.once
+    filters = (capital, duration, facts.once, in_kinds, in_words, part, row)
+    environment.filters |= {each.__name__: each for each in filters}
     chapters = {
-        title: [in_words_of(one, published) for one in parts if one in known]
+        title: [in_words_of(one, published / one.folder) for one in parts if one in known]
         for title, parts in CHAPTERS.items()
     }
-    said = {
+    environment.globals |= {
         "facts": facts,
         "table": table,
         "verdict": SWEEP.finding(SWEEP.read(published / "presets")),
@@ -148,8 +136,6 @@ def pages(root: Path) -> dict[Path, str]:
         "made": facts.made(published),
         "presets": facts.presets(published),
         "published": published,
-    }
-    environment.globals |= said | {
         **{"OUTDATED": OUTDATED, "STEPPED": STEPPED, "TROUBLES": TROUBLES},
         **{"WORDS": WORDS, "MEANINGS": MEANINGS},
     }
