@@ -186,8 +186,8 @@ def _graph(
         axes.set_ylim(-1.6, 1.6)
         for side in (1.0, -1.0):
             axes.axhline(side, color="#aaaaaa", linewidth=0.8)
-    axes.set_xlabel("time  [s]")
-    axes.set_ylabel("rotation  θ/θcr  [–]" if rocks else "place on the base  [m]")
+    words = "rotation  θ/θcr  [–]" if rocks else "place on the base  [m]"
+    axes.set(xlabel="time  [s]", ylabel=words)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
     return axes.axvline(0.0, color="#cc0000", linewidth=1.0)
 

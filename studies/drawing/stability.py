@@ -103,8 +103,7 @@ def _panel(
     axes.set_yticks([j + 0.5 for j in range(len(names))], [WORDS.get(it, it) for it in names],
                     fontsize=8.5)  # fmt: skip
     beside: dict[str, Any] = {"va": "center", "fontsize": 7.5, "color": "#555555"}
-    for j, (peak, outcome) in enumerate(zip(cases["exact_peak"], cases["exact_outcome"],
-                                            strict=True)):  # fmt: skip
+    for j, (peak, outcome) in enumerate(cases[["exact_peak", "exact_outcome"]].to_numpy()):
         text = f"{peak:.3g} θcr" if outcome == "rocked" else outcome
         axes.text(len(sources) + 0.2, j + 0.5, text, **beside)
     axes.text(len(sources) + 0.2, -0.4, "exact peak", **beside)

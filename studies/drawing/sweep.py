@@ -43,7 +43,8 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
     )
     for upper, lower, (aspect, panel) in zip(*grid, panels.items(), strict=True):
         _peaks(upper, panel[panel["width_m"] == widths[0]], sources)
-        _errors(lower, panel, widths[0])
+        known = panel[panel["error"].notna() & (panel["source"] != "exact")]
+        _errors(lower, known, widths[0])
         upper.set_title(f"H/B = {aspect:g}", fontsize=10)
         lower.set_xlabel("frequency of the pulse  ω/p  [–]")
     grid[0, 0].set(ylim=(0.0, _level(len(sources) - 0.7)), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0],
@@ -52,7 +53,10 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
     error_scale(grid[1, 0].yaxis, FLOOR, CEILING)
     for axes in grid.flat:
         axes.grid(alpha=0.25)
-    _name_the_lines(upper, lower, panel, sources)
+    levels = [_name(source, 4.1, _level(number)) for number, source in enumerate(sources)]
+    beside(upper, levels, 7.5 if len(sources) < 9 else 6.0)
+    last = known.groupby("source", sort=False)[["omega_over_p", "error"]].last()
+    beside(lower, [_name(str(source), x, error) for source, x, error in last.itertuples()])
     pulse = f"{first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
     narrowest, *others = (f"B = {width_m:g} m" for width_m in widths)
     pale = f"; pale, and the same by similarity: {', '.join(others)}" if others else ""
@@ -89,8 +93,7 @@ def _level(number: float) -> float:
     return TOP + LINE * (number + 0.7)
 
 
-def _errors(axes: Axes, panel: pd.DataFrame, narrowest: float) -> None:
-    known = panel[panel["error"].notna() & (panel["source"] != "exact")]
+def _errors(axes: Axes, known: pd.DataFrame, narrowest: float) -> None:
     for (name, width_m), points in known.groupby(["source", "width_m"], sort=False):
         source = str(name)
         look = {**style_of(source).points(3.0), "linestyle": line_of(source), "linewidth": 0.9}
@@ -98,15 +101,8 @@ def _errors(axes: Axes, panel: pd.DataFrame, narrowest: float) -> None:
         axes.plot(points["omega_over_p"], points["error"], **look, **pale)
 
 
-def _name_the_lines(upper: Axes, lower: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
-    def name(source: str, x: float, y: float) -> Name:
-        return Name(name_of(source), x, y, style_of(source).colour)
-
-    known = panel[panel["error"].notna() & (panel["source"] != "exact")]
-    last = known.groupby("source", sort=False)[["omega_over_p", "error"]].last()
-    size = 7.5 if len(sources) < 9 else 6.0
-    beside(upper, [name(source, 4.1, _level(n)) for n, source in enumerate(sources)], size)
-    beside(lower, [name(str(source), x, error) for source, x, error in last.itertuples()])
+def _name(source: str, x: float, y: float) -> Name:
+    return Name(name_of(source), x, y, style_of(source).colour)
 
 
 def draw_overview(table: pd.DataFrame) -> Figure:

@@ -64,6 +64,14 @@ def test_an_engine_of_another_package_is_told_of_on_the_page(made):
     assert "moreau" in (made / "report.html").read_text()
 
 
+def test_a_page_has_a_tile_for_each_preset_and_cases_to_try(tmp_path, monkeypatch):
+    monkeypatch.setattr(page, "CHAPTERS", {})
+    page.write_page(tmp_path / "report.html", PUBLISHED, full=True)
+    tiles, _, rest = (tmp_path / "report.html").read_text().partition('id="try-cases">')
+    assert tiles.count("MuJoCo") == 1 and "240 cases: wrong outcomes" in tiles
+    assert "mujoco:naive" in json.loads(rest.partition("</script>")[0])["peaks"]
+
+
 def test_the_page_holds_all_it_shows(made):
     links = Links()
     links.feed((made / "report.html").read_text())
