@@ -8,16 +8,10 @@ from matplotlib.font_manager import findfont, fontManager, get_font
 from matplotlib.ft2font import FT2Font
 
 FONTS = (
-    *(
-        "DejaVu Sans",
-        "Noto Sans CJK JP",
-        "Noto Sans JP",
-        "IPAexGothic",
-        "Yu Gothic",
-        "Hiragino Sans",
-    ),
-    *("Meiryo", "Microsoft YaHei", "PingFang SC", "WenQuanYi Zen Hei", "Malgun Gothic"),
-    *("Noto Sans Devanagari", "Noto Sans Thai", "Noto Emoji", "Segoe UI Emoji", "Symbola"),
+    *("DejaVu Sans", "Noto Sans CJK JP", "Noto Sans JP", "IPAexGothic", "Yu Gothic"),
+    *("Hiragino Sans", "Meiryo", "Microsoft YaHei", "PingFang SC", "WenQuanYi Zen Hei"),
+    *("Malgun Gothic", "Noto Sans Devanagari", "Noto Sans Thai", "Noto Emoji"),
+    *("Segoe UI Emoji", "Symbola"),
 )
 """Fonts that are used where they are installed; the first comes with matplotlib."""
 
