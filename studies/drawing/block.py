@@ -39,6 +39,12 @@ def outlines(system: System, at: float) -> FloatArray:
     return np.array(corners)
 
 
+def _outline(block: RigidBlock, theta: float) -> FloatArray:
+    """Return the corners of a block, from the one it stands on along the base."""
+    corners: FloatArray = outlines(block, theta)[0]
+    return corners[[1, 0, 3, 2]] if theta >= 0.0 else corners
+
+
 def draw_scene(system: System, at: float) -> Figure:
     """Draw the bodies of a system where they are, and dashed where they are at rest."""
     rest, moved = outlines(system, 0.0), outlines(system, at)
@@ -73,8 +79,8 @@ def draw_block() -> Figure:
     axes = drawing.subplots()
     axes.set(xlim=(-1.2, 1.75), ylim=(-0.5, 2.6))
     _set_the_stage(axes, 0.16)
-    foot, pivot, top, far = corners = outlines(block, theta)[0]
-    axes.add_patch(Polygon(outlines(block, 0.0)[0], **DASHED))
+    pivot, foot, far, top = corners = _outline(block, theta)
+    axes.add_patch(Polygon(_outline(block, 1e-12), **DASHED))
     axes.add_patch(Polygon(corners, **WHOLE))
     centre = 0.5 * (pivot + far)
     letters: dict[str, Any] = {"fontsize": 15, "va": "center"}
@@ -132,7 +138,7 @@ def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> 
         ]
         for ratio, look in looks:
             theta = min(max(MAGNIFIED * ratio * block.alpha, -0.5 * math.pi), 0.5 * math.pi)
-            axes.add_patch(Polygon(outlines(block, theta)[0], **look))
+            axes.add_patch(Polygon(_outline(block, theta), **look))
         title = "Housner's linearization" if source == "housner" else full_name(source)
         axes.set_title(title, fontsize=10, fontweight="bold")
         axes.text(0.5, -0.03, _verdict(line), transform=axes.transAxes, ha="center", va="top",
