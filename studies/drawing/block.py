@@ -40,9 +40,13 @@ def outlines(system: System, at: float) -> FloatArray:
 
 
 def _outline(block: RigidBlock, theta: float) -> FloatArray:
-    """Return the corners of a block, from the one it stands on along the base."""
-    corners: FloatArray = outlines(block, theta)[0]
-    return corners[[1, 0, 3, 2]] if theta >= 0.0 else corners
+    """Return the corners of a block turned by `theta` [rad], from the one it stands on."""
+    side = 1.0 if theta >= 0.0 else -1.0
+    width, height = side * block.width, block.height
+    corners = np.array([[0.0, 0.0], [-width, 0.0], [-width, height], [0.0, height]])
+    sine, cosine = math.sin(theta), math.cos(theta)
+    turned: FloatArray = corners @ np.array([[cosine, -sine], [sine, cosine]]) + [0.5 * width, 0.0]
+    return turned
 
 
 def draw_scene(system: System, at: float) -> Figure:
