@@ -25,6 +25,8 @@ from studies.kit.workers import Lost, answers
 copyreg.dispatch_table[MappingProxyType] = lambda it: (dict, (dict(it),))
 
 PACKAGES = ("analytic", "engines", "studies")
+LOADING_S = 60.0
+"""How long an engine of another package may take to be loaded [s]."""
 
 
 @contextmanager
@@ -40,9 +42,9 @@ def kept_out() -> Iterator[None]:
 def apart(call: Callable[..., Any], engine: str, *given: Any) -> Any:
     """Return what a function answers, of an engine, in a process of its own.
 
-    UnloadableError if it raises, or its process ends or takes longer than a minute.
+    UnloadableError if it raises, or its process ends or takes longer than `LOADING_S`.
     """
-    ((_, answer),) = answers(_tried, [(call, engine, *given)], 1, 60.0)
+    ((_, answer),) = answers(_tried, [(call, engine, *given)], 1, LOADING_S)
     if isinstance(answer, Lost):
         raise UnloadableError(f"engine {engine!r} cannot be loaded: {answer.why}")
     found, problem = answer
