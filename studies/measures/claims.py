@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
+from typing import TypeAlias
 
 import pandas as pd
 
@@ -23,7 +24,7 @@ class Finding:
     source: str = ""
 
 
-Check = Callable[[pd.DataFrame], tuple[bool, str]]
+Check: TypeAlias = "Callable[[pd.DataFrame], tuple[bool, str]]"
 """Says of a table whether a statement holds, and the numbers."""
 
 
