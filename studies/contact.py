@@ -250,8 +250,10 @@ def finding(tables: Tables) -> str:
             "No tuned setting raises the errors of an engine when it alone is left at its default."
         )
     worst, engines = raised.nlargest(1, "max_error").iloc[0], left["engine"].nunique()
-    more = out_of(left.loc[left["worse"], "engine"].nunique(), engines)
-    others = f", and {more} engines predict more outcomes wrong with one setting left so"
+    worse = left.loc[left["worse"], "engine"].nunique()
+    predict = "predicts" if worse == 1 else "predict"
+    more = f"{out_of(worse, engines)} engines {predict}"
+    others = f", and {more} more outcomes wrong with one setting left so"
     return (
         f"{ENGINES[worst['engine']].title} misses peaks by up to {part(worst['max_error'])} with "
         f"its {worst['factor']} alone left at the library's default{others if engines > 1 else ''}."
