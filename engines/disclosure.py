@@ -16,7 +16,7 @@ class Help(enum.Enum):
 
 
 class Deviation(enum.Enum):
-    """What an engine gets wrong as it comes, without a word."""
+    """What an engine gets wrong with its defaults, without a word."""
 
     MIRROR = "shaken the other way, the block does not answer the other way"
     PEAK = "on one of the paper's histories another outcome, or a peak off by more than 0.3"

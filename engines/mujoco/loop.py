@@ -1,7 +1,7 @@
 """MuJoCo's steps taken by a compiled loop over its public `mj_step`, on the memory of its objects.
 
 The library's Python objects know their addresses, and its introspection knows what stands where.
-Both are held against what Python reads before they are used; where they disagree, Python steps.
+Both are compared with what Python reads before they are used; where they disagree, Python steps.
 """
 
 import ctypes

@@ -1,6 +1,6 @@
 """Settings of an engine: a frozen dataclass whose fields say what they allow.
 
-Its defaults are the library's own, so that ``Settings()`` is the library as it comes; None leaves
+Its defaults are the library's own, so that ``Settings()`` changes nothing; None leaves
 a setting to the library.
 """
 

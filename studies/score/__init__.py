@@ -254,7 +254,7 @@ def command(
     """
     name = known(engine)
     declared = scored(name)
-    # what cannot be held against it is refused now, and not after the last run
+    # what cannot be compared with it is refused now, and not after the last run
     requirements = [required(text, declared) for text in require or ()]
     if require is not None:
         asked = [f"{preset}:{what}" for preset, what, _ in requirements]
