@@ -289,10 +289,14 @@ def clock(engine: str) -> Iterator[list[float]]:
         setattr(owner, name, step)
 
 
-def has(engine: Engine, preset: str = "", settings: Row | None = None, **_: Any) -> bool:
-    """Say whether an engine has what is put back into its scene."""
+def has(
+    engine: Engine, preset: str = "", settings: Row | None = None, frame: str = "base", **_: Any
+) -> bool:
+    """Return whether an engine has what is put back into its scene."""
     known = not preset or preset in [use.name for use in engine.presets]
-    return known and engine.preset(preset or None).takes(**settings or {})
+    return (
+        known and frame in engine.frames and engine.preset(preset or None).takes(**settings or {})
+    )
 
 
 def put_back(job: Job) -> Row:
