@@ -16,7 +16,8 @@ from engines.run.drive import run as drive
 from studies import precision
 from studies.kit.run import run
 from studies.measures.costs import LEAST_RUNS, LEAST_S, best_of, cost_text, enough
-from studies.precision import CASE, SCENES, STUDY, choices, clock, jobs, measure, observed_order
+from studies.precision import SCENES, STUDY, choices, jobs, measure, observed_order
+from studies.precision.scene import CASE, clock
 
 MOST_S = 4.0 * LEAST_S
 ONE_CONTACT = {"drake": 0.6}

@@ -1,0 +1,180 @@
+"""What a scene costs: the shares of a step, what it leaves out, and the exact solution."""
+
+from __future__ import annotations
+
+import math
+import os
+import pickle
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, replace
+from functools import partial
+from pathlib import Path
+from pkgutil import resolve_name
+from timeit import repeat
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from analytic import peak_ratios, simulate
+from analytic.response import Outcome, Response
+from engines import ENGINES
+from engines.declaration import Engine
+from engines.run.drive import build
+from studies.cases.paper import HISTORIES, SWEEPS, free_rocking_window, sweep_cases
+from studies.kit.jobs import Job, Row, ask, summary
+from studies.measures.costs import best_of, best_of_each
+from studies.measures.differences import posed_cases
+from studies.sources.registry import scene_of
+
+GRID = np.linspace(0.0, 1.0, 1001)
+"""Of a recorded history, over its duration."""
+
+
+CASE = HISTORIES[5][1]
+"""Figure 5-b, of which scenes are timed: one impact before the peak, κ about 5."""
+
+
+def omissions() -> dict[str, dict[str, Any]]:
+    """Return the options that put back what a scene leaves out, by the name of that; none first."""
+    window = free_rocking_window(CASE.block, CASE.motion)
+    return {
+        "as it is": {},
+        "free body instead of planar": {"settings": {"planar": False}},
+        "full box instead of corners": {"settings": {"geometry": "box"}},
+        "base moving in the world": {"frame": "world"},
+        "8/p of free rocking after the pulse": {"duration": window},
+        "the same, recorded as a history": {"duration": window, "times": window * GRID},
+        "steps all equal": {"preset": "fixed"},
+    }
+
+
+def references() -> dict[str, Callable[[], object]]:
+    """Return what the exact solution is timed with: one response, or the whole sweep."""
+    block, motion = CASE.block, CASE.motion
+    window = free_rocking_window(block, motion)
+    watched = partial(simulate, block, motion, duration=window)
+    cases = [case for case in sweep_cases(SWEEPS) if case.width_m == 0.5]
+    alike = posed_cases(pd.DataFrame([asdict(case) for case in cases]))
+    return {
+        "one response, to its peak": partial(simulate, block, motion),
+        "8/p of free rocking after the pulse": watched,
+        "the same, recorded as a history": partial(watched, times=window * GRID),
+        "480 cases of the sweep": partial(peak_ratios, *alike),
+        "960 cases, half of them copies by similarity": partial(peak_ratios, *np.tile(alike, 2)),
+        "480 cases, one by one in Python": lambda: [simulate(c.block, c.motion) for c in cases],
+    }
+
+
+def share(job: Job) -> Row:
+    """Return how long a step takes, and of that the engine's own [s].
+
+    Of the latter a clock around it tells while Python takes the steps; nan where none fits there.
+    """
+    ask(job)  # the first may compile, which would spend the whole budget
+    whole, _ = best_of(partial(ask, job), job.labels["budget_s"])
+    if whole.outcome is Outcome.FAILED:
+        return {**summary(whole), "step_s": math.nan, "engine_s": math.nan}
+    interpreted = replace(job, options={"compiled": False})
+    tick_s = 2.0 * min(repeat(time.perf_counter, number=1000, repeat=20)) / 1000.0
+    own = dict[float, float]()
+
+    def clocked() -> Response:
+        with clock(job.asked.engine) as spent:
+            response = ask(interpreted)
+        own[response.wall_s] = sum(spent) - tick_s * len(spent)
+        return response
+
+    engine_s = math.nan
+    if job.asked.declared.own_step:
+        least, _ = best_of(clocked, job.labels["budget_s"])
+        engine_s = max(own[least.wall_s] / least.steps, 0.0)
+    return {**summary(whole), "step_s": whole.wall_s / whole.steps, "engine_s": engine_s}
+
+
+@contextmanager
+def clock(engine: str) -> Iterator[list[float]]:
+    """Put a clock around an engine's own step while the context lasts; yield its times [s]."""
+    place, _, name = ENGINES[engine].own_step.replace(":", ".").rpartition(".")
+    owner: Any = resolve_name(place)
+    step, spent = getattr(owner, name), []
+
+    def timed(*arguments: Any, **named: Any) -> Any:
+        start = time.perf_counter()
+        try:
+            return step(*arguments, **named)
+        finally:
+            spent.append(time.perf_counter() - start)
+
+    setattr(owner, name, timed)
+    try:
+        yield spent
+    finally:
+        setattr(owner, name, step)
+
+
+def has(
+    engine: Engine, preset: str = "", settings: Row | None = None, frame: str = "base", **_: Any
+) -> bool:
+    """Return whether an engine has what is put back into its scene."""
+    known = not preset or preset in [use.name for use in engine.presets]
+    return (
+        known and frame in engine.frames and engine.preset(preset or None).takes(**settings or {})
+    )
+
+
+def put_back(job: Job) -> Row:
+    """Time a scene with what it leaves out, in turn with the scene as it is."""
+    options = omissions()[str(job.labels["scene"])]
+    observed = {name: options.pop(name) for name in ("duration", "times") if name in options}
+    preset = options.pop("preset", "")
+    source, case = f"{job.source}:{preset}" if preset else job.source, replace(job.case, **observed)
+    posed = replace(job, case=case, source=source, options=options)
+    asked = [partial(ask, posed), partial(ask, job)]
+    (found, runs), (plain, _) = best_of_each(asked, job.labels["budget_s"])
+    exact = simulate(CASE.block, CASE.motion).peak_ratio
+    return {
+        **summary(found),
+        "runs": runs,
+        "step_s": found.wall_s / max(found.steps, 1),
+        "plain_s": plain.wall_s,
+        "setup_s": found.setup_s,
+        "memory_kib": math.nan if found.outcome is Outcome.FAILED else memory_of(posed),
+        "error": found.peak_ratio / exact - 1.0,
+    }
+
+
+def memory_of(job: Job) -> float:
+    """Return the memory [KiB] of a built scene, by a process whose memory nothing has used."""
+    code = "import pickle, sys; from studies.precision.scene import grown; "
+    code += "print(grown(pickle.load(sys.stdin.buffer)))"
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    line = [sys.executable, "-c", code]
+    done = subprocess.run(line, input=pickle.dumps(job), env=env, capture_output=True)
+    return float(done.stdout.split()[-1]) if done.returncode == 0 else math.nan
+
+
+def grown(job: Job) -> float:
+    """Return by how much memory [KiB] grows with a built scene; nan where no system tells."""
+    status, case = Path("/proc/self/statm"), job.case
+    if not status.exists():
+        return math.nan
+    observed = {"duration": case.duration, "times": case.times}
+    scene = scene_of(case.system, case.motion, job.asked.preset, **observed, **job.options)
+    worlds, pages = [build(job.asked.declared, scene)], []
+    for count in (0, 20):
+        worlds += [build(job.asked.declared, scene) for _ in range(count)]
+        pages.append(int(status.read_text().split()[1]))
+    for world in worlds:
+        world.close()
+    return 4.0 * max(pages[1] - pages[0], 0) / 20
+
+
+def reference(job: Job) -> Row:
+    """Time what the exact solution leaves out: one response, or the whole sweep."""
+    wall_s = min(repeat(references()[str(job.labels["scene"])], number=1, repeat=30))
+    return {**summary(ask(job)), "wall_s": wall_s}
