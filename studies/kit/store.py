@@ -22,6 +22,8 @@ from typing import Any, Self
 
 import pandas as pd
 
+from analytic.kernels.compiled import SOURCES
+from analytic.kernels.kept import are_compiled
 from engines import ENGINES
 from studies.cases.refusal import BadInputError
 from studies.kit.identity import COMPUTING, NOT_INSTALLED, ROOT, Maker, changed, version_of, why
@@ -61,6 +63,7 @@ class Store:
         self.folder, self.study, self.table = folder, study, table
         self._began, self._added = time.perf_counter(), 0
         self._taken: list[Row] = []
+        self._first = not are_compiled(SOURCES)
         fresh = not (folder / ROWS).exists()
         if fresh and folder.is_dir() and not _may_be_filled(folder, study, table):
             raise FolderError(folder, f"it must be new or empty, or hold the {ROWS} of this study")
@@ -202,6 +205,7 @@ class Store:
         before = provenance_of(self.folder)
         run = {
             "start": datetime.now(UTC).isoformat(timespec="seconds"),
+            "first": self._first,  # since an installation: it compiles what it calls
             "git": commit(),
             **asked,
             "duration_s": round(time.perf_counter() - self._began, 3),
@@ -211,6 +215,12 @@ class Store:
         record = {"study": self.study, **versions(before), "git": commit(), "machine": machine()}
         runs = [*before.get("runs", ()), run]
         write_record(self.folder, {**record, "made": makers, "runs": runs})
+
+    def last(self) -> None:
+        """Write how long the run took, its drawing included."""
+        record = provenance_of(self.folder)
+        record["runs"][-1]["duration_s"] = round(time.perf_counter() - self._began, 3)
+        write_record(self.folder, record)
 
 
 def _read(base: sqlite3.Connection) -> dict[str, tuple[Maker, Row]]:

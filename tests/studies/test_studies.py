@@ -57,6 +57,7 @@ def test_a_study_is_drawn_and_worded_from_its_tables_alone(name, tmp_path, capsy
     assert run(arguments) == 0
     last = json.loads((tmp_path / "provenance.json").read_text())["runs"][-1]
     assert (last["computed"], last["rows"] > 0) == (0, True)
+    assert last["first"] in (True, False) and last["duration_s"] > 0.0
     assert (read_all(tmp_path, "*.csv"), read_all(tmp_path, "*.png")) == (before, pictures)
 
 
