@@ -5,32 +5,21 @@ and ends with 0 while the trouble is there. Nothing that computes imports this.
 """
 
 import ast
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from engines import ENGINES
 
-OTHERS = {"mjx": ("MJX", "mujoco.mjx"), "warp": ("MuJoCo Warp", "mujoco_warp")}
-"""Libraries that are no engine here -> what they are called, and the module to import."""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Trouble:
+class Trouble(NamedTuple):
     """What a script shows, as its docstring says.
 
-    Attributes
-    ----------
-    engine, called, library : str
-        Name of the engine, what a reader sees, and the module that the script imports.
-    script : str
-        Name of the file.
-    title, mechanism, kind : str
-        What a user sees, by what it comes about, and which kind of mechanism that is.
+    engine and called are its name and its title; title is what a user sees, mechanism by what it
+    comes about, and kind which kind of mechanism that is.
     """
 
     engine: str
     called: str
-    library: str
     script: str
     title: str
     mechanism: str
@@ -39,17 +28,9 @@ class Trouble:
 
 def _read(path: Path) -> Trouble:
     engine = path.name.partition("_")[0]
-    called, library = OTHERS.get(engine) or (ENGINES[engine].title, ENGINES[engine].library)
     title, mechanism, kind = str(ast.get_docstring(ast.parse(path.read_text()))).split("\n\n")
-    return Trouble(
-        engine=engine,
-        called=called,
-        library=library,
-        script=path.name,
-        title=title,
-        mechanism=" ".join(mechanism.split()),
-        kind=kind.removeprefix("Kind: "),
-    )
+    words = title, " ".join(mechanism.split()), kind.removeprefix("Kind: ")
+    return Trouble(engine, ENGINES[engine].title, path.name, *words)
 
 
 TROUBLES = tuple(_read(path) for path in sorted(Path(__file__).parent.glob("[a-z]*_*.py")))
