@@ -16,7 +16,7 @@ def in_this_process(request, monkeypatch):
     """Let no job and no engine need a process of its own, but in tests of what these do."""
     if "processes" not in request.keywords:
         monkeypatch.setattr(Job, "needs_process", False)
-        monkeypatch.setattr(foreign, "kept_out", nullcontext)
+        monkeypatch.setattr(foreign, "tried_apart", nullcontext)
 
 
 @pytest.fixture

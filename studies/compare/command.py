@@ -26,8 +26,7 @@ from studies.kit.cluster import place_of
 from studies.kit.jobs import Question, Row
 from studies.kit.options import Computing, EffortOptions, Yours
 from studies.kit.run import exit_code
-from studies.kit.say import say
-from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless, unusual
+from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless
 from studies.sources.registry import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", "modified", *core_sources())
@@ -99,8 +98,6 @@ def command(
         print(table_text(case, rows, note, edge, degrees=excitation.degrees))
     if plot:
         draw(case, rows, plot)
-    for line in unusual(width, height, excitation, motion):
-        say(f"note: {line}")
     return exit_code(rows)
 
 

@@ -23,17 +23,6 @@ from studies.kit.postponed import postpone
 if TYPE_CHECKING:
     from cyclopts import App, UnknownOptionError
 
-RETIRED = {
-    **dict.fromkeys(("ensemble", "free", "harmonic", "literature", "redraw", "throughput"), ""),
-    "cost": "precision",
-    "defaults": "overturning --planes --sources engines:naive",
-    "estimate": "validate --halves",
-    "steps": "validate",
-    "symptoms": "advise --symptoms",
-    "validity": "overturning",
-    "versions": "score --against",
-}
-"""Commands that answer for one release that they are gone, and what does their work."""
 PLACES = {"compare": "compare.command", "report": "page.report", "readme": "page.readme"}
 """Command -> its module, where that has another name."""
 REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
@@ -140,10 +129,6 @@ def _answer(commands: Mapping[str, str], arguments: Sequence[str]) -> int:
     postpone("pandas")
     if "--version" in arguments and len(arguments) > 1:
         return say.refuse(f"--version is one of {len(arguments)} arguments; it must stand alone")
-    if arguments and arguments[0] in RETIRED:
-        instead = RETIRED[arguments[0]]
-        words = f"use {instead}" if instead else "see the changelog"
-        return say.refuse(f"{arguments[0]} was retired in 0.3; {words}")
     for before, argument in itertools.pairwise(["COMMAND", *arguments]):
         name, equals, value = argument.partition("=")
         if not argument.strip() or (name.startswith("--") and equals and not value.strip()):
@@ -152,7 +137,7 @@ def _answer(commands: Mapping[str, str], arguments: Sequence[str]) -> int:
     from studies.kit import foreign
 
     try:
-        with foreign.kept_out():
+        with foreign.tried_apart():
             code = make_app(commands, arguments[0] if arguments else "")(
                 arguments,
                 exit_on_error=False,
@@ -169,12 +154,12 @@ def _answer(commands: Mapping[str, str], arguments: Sequence[str]) -> int:
 
 def _unknown_option(error: UnknownOptionError) -> str:
     """Return the refusal of an option that a command does not have, with the one it is like."""
-    from difflib import get_close_matches
+    from engines.scene import perhaps
 
     given = (error.token.keyword or error.token.value).partition("=")[0]
     names = [name for each in error.argument_collection for name in each.names]
-    options = {name.lstrip("-"): name for name in names if name.startswith("--")}
-    near = [options[word] for word in get_close_matches(given.lstrip("-"), options, 1, 0.7)]
-    command = " ".join(error.command_chain or ())
-    able = f"did you mean {near[0]}?" if near else f"it takes {', '.join(options.values())}"
-    return f"{given} is no option of {command or 'rocking'}; {able}"
+    options = [name for name in names if name.startswith("--")]
+    command = " ".join(error.command_chain or ()) or "rocking"
+    return (
+        f"{given} is no option of {command}{perhaps(given, options)}; it takes {', '.join(options)}"
+    )

@@ -10,11 +10,10 @@ import ast
 import hashlib
 import platform
 import re
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
-from importlib import metadata
+from importlib import import_module, metadata
 from inspect import getsourcefile, unwrap
 from pathlib import Path
 from typing import Any
@@ -83,14 +82,14 @@ def files_of(module: str) -> frozenset[Path]:
     return frozenset(found)
 
 
-@cache
-def _engine_files(module: str) -> tuple[Path, ...]:
-    """Return the files of an engine by the module of its builder, and engines that it imports."""
-    known = getattr(sys.modules.get(module), "__file__", None) or getsourcefile(__import__(module))
-    file = Path(known or "")
-    if ENGINES_AT not in file.parents:
-        return (file if file.name != "__init__.py" else file.parent,)
-    return (ENGINES_AT / file.relative_to(ENGINES_AT).parts[0],)
+def _code_of(module: str) -> Path:
+    """Return the folder or file of an engine by the module of its builder."""
+    package, _, rest = module.partition(".")
+    if package == ENGINES_AT.name:
+        place = ENGINES_AT / rest.partition(".")[0]
+        return place if place.is_dir() else place.with_suffix(".py")
+    file = Path(getsourcefile(import_module(package)) or "")
+    return file.parent if file.name == "__init__.py" else file
 
 
 @cache
@@ -112,9 +111,7 @@ def maker_of(source: Source, measure: Callable[..., Any]) -> Maker:
     shared = (ENGINES_AT / name for name in ("parts", "run", "watching"))
     made["engines"] = code_in(*ENGINES_AT.glob("*.py"), *shared)
     made["studies"] = code_in(*measured, SOURCES / "registry.py")
-    build = source.declared.build
-    files = getattr(build, "files", None) or _engine_files(build.__module__)
-    return {**made, f"code of {source.engine}": code_in(*files)}
+    return {**made, f"code of {source.engine}": code_in(_code_of(source.declared.build.__module__))}
 
 
 def _reference() -> str:

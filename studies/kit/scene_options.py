@@ -1,7 +1,6 @@
 """Options of a scene: what stands on the base, how that moves, and from which start."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
@@ -252,25 +251,3 @@ def refuse_endless(
                 f"--{name} is {given:g}; it must be at least {least:.4g} for a run of "
                 f"{watched_s:.4g} s, so that this takes at most {MOST_STEPS:g} steps"
             )
-
-
-def unusual(width: float, height: float, given: Excitation, motion: Motion) -> Iterator[str]:
-    """Yield a note for each value that is unusual, with what it would be in another unit."""
-    for name, size in (("width", width), ("height", height)):
-        if size > 20.0:
-            less = 1e-3 * size
-            yield f"--{name} is {size:g} m, large for a block; --{name} {less:g} for as many mm"
-        if size < 0.005:
-            yield f"--{name} is {size:g} m, small for a block"
-    if given.amplitude is not None and given.amplitude > 2.0:
-        meant = f"--amplitude {given.amplitude / GRAVITY:.4g} for as many m/s²"
-        yield f"--amplitude is {given.amplitude:g} g, strong for a pulse; {meant}"
-    if given.omega is not None and given.omega < 1.0:  # its period is more than 6 s
-        more = 2.0 * math.pi * given.omega
-        yield f"--omega is {given.omega:g} rad/s, slow for a pulse; {more:.4g} for as many Hz"
-    if given.tilt is not None and abs(given.tilt) > 1.0 and not given.degrees:
-        yield f"--tilt is {given.tilt:g} α, from where a block falls; --degrees for an angle"
-    # the strongest record ever has some 3 to 4 g
-    if isinstance(motion, Record) and motion.peak > 3.0 * GRAVITY:
-        has = f"--record has {motion.peak / GRAVITY:.3g} g at most, strong for a record"
-        yield f"{has}; its header, or --units, says in which unit it is"

@@ -93,9 +93,6 @@ stability --out DIR --sources exact exact | --sources names 'exact' twice | once
 blocks list.csv --record X.AT2 --sources exat --out DIR | --sources: source is 'exat'
 compare CASE --hight 2 | --hight | --height
 weep | weep | sweep
-free --out DIR | free was retired in 0.3; see the changelog
-cost --out DIR | cost was retired in 0.3; use precision
-symptoms --out DIR | retired in 0.3; use advise
 --version x | --version | alone
 compare --version x | --version | alone
 x --version | --version | alone

@@ -1,6 +1,5 @@
-"""Slips of a unit: a question where a value cannot be meant, a note where it is unusual."""
+"""Slips of a unit: a question where a value cannot be meant."""
 
-import math
 import re
 
 import pytest
@@ -43,32 +42,3 @@ def test_a_tilt_in_degrees_is_asked_about(capsys):
     capsys.readouterr()
     for given in (["--tilt", "100"], ["--tilt", "91", "--degrees"]):
         assert "?" not in refused(capsys, ["compare", *BLOCK, *given, *EXACT])
-
-
-UNUSUAL = [
-    (["--width", "30", "--height", "150", *PULSE], ["--width is 30 m, large", "--height 0.15 for"]),
-    (["--width", "0.002", "--height", "0.006", *PULSE], ["--width is 0.002 m, small for a block"]),
-    ([*BLOCK, "--amplitude", "3.924", "--omega", "6"], ["--amplitude 0.4 for as many m/s²"]),
-    ([*BLOCK, "--amplitude", "0.4", "--omega", "0.9"], ["0.9 rad/s, slow", "5.655 for as many Hz"]),
-    ([*BLOCK, "--tilt", "2", *PULSE], ["--tilt is 2 α, from where a block falls; --degrees"]),
-    ([*BLOCK, "--record", "RECORD"], ["--record has 40 g at most", "--units"]),
-]
-
-
-@pytest.mark.parametrize(("given", "words"), UNUSUAL)
-def test_what_is_only_unusual_runs_with_a_note(given, words, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    samples = [40.0 * math.sin(0.6 * n) for n in range(60)]
-    lines = [f"{0.01 * n},{a}" for n, a in enumerate(samples)]
-    (tmp_path / "RECORD").write_text("time_s,acceleration_g\n" + "\n".join(lines))
-    assert run(["compare", *given, *EXACT, "--json"]) == 0
-    said = capsys.readouterr()
-    assert said.out.count("\n") == 1 and said.out.startswith("{")
-    for part in words:
-        assert part in said.err
-    assert all(line.startswith("note: ") for line in said.err.splitlines())
-
-
-def test_what_is_usual_runs_without_a_note(capsys):
-    assert run(["compare", *BLOCK, *PULSE, "--tilt", "0.5", *EXACT]) == 0
-    assert capsys.readouterr().err == ""
