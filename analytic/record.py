@@ -64,16 +64,19 @@ class Record:
         object.__setattr__(self, "samples", samples)
 
     @classmethod
-    def read(cls, path: str | Path, units: str | None = None) -> "Record":
+    def read(cls, path: str | Path, units: str | None = None, dt: float | None = None) -> "Record":
         """Read a recorded ground acceleration.
 
         Parameters
         ----------
         path : str or Path
             A PEER AT2 file, known by a header that says NPTS and DT; an ASC file of ESM or ITACA;
-            or a table of two columns, time [s] and acceleration, separated by commas, semicolons or
-            blanks, with or without a line of names, comments beginning with # or %. The first time
-            becomes zero.
+            samples alone, their number and step on a line "npts dt" above or their step given; or a
+            table of two columns, time [s] and acceleration, separated by commas, semicolons or
+            blanks, with or without a line of names, the first time becoming zero. Comments begin
+            with # or %.
+        dt : float, optional
+            Time [s] between samples of a file that does not state its own.
         units : {"g", "mg", "m/s2", "cm/s2", "mm/s2", "gal"}, optional
             Needed where the file does not state its own.
 
@@ -85,8 +88,8 @@ class Record:
             else in it leaves a doubt.
         """
         try:
-            dt, samples = read(Path(path), units)
-            return cls(dt=dt, samples=samples)
+            found = read(Path(path), units, dt)
+            return cls(dt=found.dt, samples=found.samples)
         except ValueError as problem:
             raise ValueError(f"path is {str(path)!r}; {problem}") from problem
 

@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 from cyclopts import Parameter
 
-from analytic.accelerograms.units import Units
+from analytic.accelerograms import Units
 from analytic.block import RigidBlock
 from analytic.record import Record
 from analytic.response import Outcome
@@ -219,6 +219,7 @@ def command(
     record: Annotated[tuple[arguments.Place, ...], arguments.several],
     out: arguments.Out,
     scale: Annotated[tuple[arguments.Positive, ...], arguments.several] = (1.0,),
+    record_dt: arguments.Positive | None = None,
     units: Annotated[Units, arguments.one_of(Units)] | None = None,
     baseline: Annotated[Baseline, arguments.one_of(Baseline)] | None = None,
     sources: arguments.Sources = ("exact",),
@@ -241,6 +242,8 @@ def command(
         Recorded accelerograms, files as `rocking compare --record` takes them.
     scale
         Factors on the records' acceleration.
+    record_dt
+        Time [s] between the samples of files that do not state it: of one column.
     units
         Of the records' acceleration: needed where a file does not state them, refused where one
         states others.
@@ -252,14 +255,20 @@ def command(
 
     arguments.refuse_repeats("--scale", scale)
     arguments.refuse_repeats("--record", [Path(path.name) for path in record])
-    motions = recorded(record, units, baseline)
+    motions = recorded(record, units, baseline, record_dt)
     grounds = {path.name: ground for path, ground in zip(record, motions, strict=True)}
     listed = read_cabinets(cabinets)
     cases = len(listed) * len(grounds) * len(scale)
     asked = f"the list is {str(cabinets)!r}, of {len(listed)} blocks"
     running.refuse_too_much(asked, cases, ("exact", *sources), yes=yes)
     study = replace(STUDY, tabulate=partial(tabulate, sources=sources))
-    given = {"sources": sources, "scale": scale, "units": units, "baseline": baseline}
+    given = {
+        "sources": sources,
+        "scale": scale,
+        "record_dt": record_dt,
+        "units": units,
+        "baseline": baseline,
+    }
     found = jobs(listed, grounds, scale, sources, baseline or "")
     code = study.carry_out(out, found, running, record=[*grounds], **given)
     tables = STUDY.read(out)

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from analytic.accelerograms.text import finite_number, lines_of, shown
 from analytic.block import RigidBlock
 from analytic.slide import SlidingBlock
+from analytic.text import finite_number, lines_of, shown
 from studies.cases.refusal import BadInputError
 from studies.kit.scene_options import MOST_M
 

@@ -1,5 +1,6 @@
 """Recorded accelerograms as a command takes them: read, corrected, refused in one line."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
@@ -13,15 +14,21 @@ Baseline = Literal["none", "constant", "linear"]
 """How a record is corrected: not at all, or by what its samples lose."""
 
 
-def read_record(path: Path, units: str | None = None, baseline: Baseline | None = None) -> Record:
+def read_record(
+    path: Path,
+    units: str | None = None,
+    baseline: Baseline | None = None,
+    dt: float | None = None,
+) -> Record:
     """Read a recorded ground acceleration [m/s2], as `Record.read` does, and correct it.
 
     A record that cannot be read, or is nothing but its trend, is refused.
     """
     try:
-        record = Record.read(path, units)
+        record = Record.read(path, units, dt)
     except ValueError as error:
-        problem = str(error).removeprefix("path").replace("; units must", "; --units must")
+        problem = re.sub(r"; units(?= must)", "; --units", str(error).removeprefix("path"))
+        problem = re.sub(r"; dt(?=,| must not)", "; --record-dt", problem)
         raise BadInputError(f"--record{problem}") from error
     if baseline is None or baseline == "none":
         return record
@@ -31,9 +38,11 @@ def read_record(path: Path, units: str | None = None, baseline: Baseline | None 
         raise BadInputError(f"--record is {str(path)!r}; {error}") from error
 
 
-def recorded(paths: Sequence[Path], units: str | None, baseline: Baseline | None) -> list[Record]:
+def recorded(
+    paths: Sequence[Path], units: str | None, baseline: Baseline | None, dt: float | None = None
+) -> list[Record]:
     """Read records in the order of their paths; refuse also one that is zero throughout."""
-    records = [read_record(path, units, baseline) for path in paths]
+    records = [read_record(path, units, baseline, dt) for path in paths]
     for path, record in zip(paths, records, strict=True):
         if record.peak == 0.0:
             words = "it is zero throughout, and must not be"

@@ -10,7 +10,7 @@ from typing import Annotated, Any, TypeVar, get_args
 
 from cyclopts import Parameter, Token
 
-from analytic.accelerograms.text import finite_number, underflows
+from analytic.text import finite_number, underflows
 from engines import ENGINES
 from engines.scene import MOST_HALF_CYCLES, perhaps
 from studies.cases.refusal import BadInputError

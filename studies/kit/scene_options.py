@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from analytic.accelerograms.units import Units
+from analytic.accelerograms import Units
 from analytic.block import GRAVITY, RigidBlock
 from analytic.checks import LEAST, MOST
 from analytic.frame import RockingFrame
@@ -60,7 +60,9 @@ class Excitation:
         Phase [rad] of the pulse at its begin; 1.5708 makes it a cosine.
     record
         A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, or
-        a table of time [s] and acceleration. It is straight between its samples.
+        a table of time [s] and acceleration, or one column. It is straight between its samples.
+    record_dt
+        Time [s] between the samples of a file that does not state it: of one column.
     units
         Of the record's acceleration: needed where the file does not state them, refused where it
         states others. g is 9.81 m/s².
@@ -89,6 +91,7 @@ class Excitation:
     half_cycles: HalfCycles | None = None
     phase: Finite | None = None
     record: Place | None = None
+    record_dt: Positive | None = None
     units: Annotated[Units, one_of(Units)] | None = None
     scale: Positive | None = None
     pga: Positive | None = None
@@ -112,13 +115,15 @@ class Excitation:
         if self.record is not None:
             refuse_given(pulse, "only without --record")
             return self._recorded(self.record)
-        refuse_given(self._given("units", "scale", "pga", "baseline"), "only with --record")
+        refuse_given(
+            self._given("record_dt", "units", "scale", "pga", "baseline"), "only with --record"
+        )
         released = (self.tilt or self.rate) and set(pulse.values()) == {None}
         return Still() if released else self._pulse()
 
     def _recorded(self, path: Path) -> Record:
         refuse_both(scale=self.scale, pga=self.pga)
-        record = read_record(path, self.units, self.baseline)
+        record = read_record(path, self.units, self.baseline, self.record_dt)
         factor = "" if self.scale is None else f" times --scale {self.scale:g}"
         peak = "" if self.pga is None else f" scaled to --pga {self.pga:g}"
         with as_bad_input(f"--record{factor}{peak}: "):

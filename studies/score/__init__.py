@@ -18,8 +18,8 @@ import numpy as np
 import pandas as pd
 from cyclopts import Parameter
 
-from analytic.accelerograms.text import finite_number
 from analytic.response import Outcome
+from analytic.text import finite_number
 from engines import ENGINES
 from engines.declaration import AT_REST, Engine
 from engines.registry import OWN, UnloadableError, named

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from records import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, TITLE
 
-from analytic.accelerograms.text import MOST_BYTES, MOST_SAMPLES
+from analytic.text import MOST_BYTES, MOST_SAMPLES
 from studies.cases.accelerograms import read_record
 from studies.cases.refusal import BadInputError
 
@@ -126,6 +126,12 @@ DOUBTS = [
     ("words at the end", "0 0.1\nend of data\n", None, "line 2 has 3 columns"),
     ("COSMOS", "Corrected acceleration   (Format v01.20 with 13 text lines)\n", "g", "COSMOS file"),
     ("SMC", "2 CORRECTED ACCELEROGRAM\n*\n", "g", "it is a SMC file, which is not read"),
+    ("SMC, unknown", "0 UNKNOWN                 ORIGIN\n*\n", "g", "it is a SMC file"),
+    ("SIMBAD", "SIMBAD v06, record 12, acceleration in m/s2\n0.1\n0.2\n", None, "a SIMBAD file"),
+    ("touching", GOOD.replace("0.0000000E+00", "1.8E-06-1.2E-06"), None, "must stand apart"),
+    ("one column", "# units: g\n0.1\n0.2\n0.3\n", None, "it has one column; --record-dt, or a"),
+    ("npts dt, short", "4 0.01\n0.1\n0.2\n0.3\n", "g", "3 samples; it must hold the 4 of its"),
+    ("npts dt, no unit", "3 0.01\n0.1\n0.2\n0.3\n", None, "does not state its units"),
     ("CSMIP", "Corrected Accelerogram Caltech Vol II\n", "g", "it is a CSMIP file"),
     ("K-NET", "Origin Time       1999/01/02 03:04:05\n", "g", "it is a K-NET file"),
 ]
@@ -225,7 +231,7 @@ def test_a_file_of_more_words_than_two_a_sample(tmp_path, capsys):
 
 @pytest.mark.parametrize("form", ["no count", "table"])
 def test_samples_are_counted_where_no_header_says_how_many(form, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("analytic.accelerograms.units.MOST_SAMPLES", 6)
+    monkeypatch.setattr("analytic.accelerograms.MOST_SAMPLES", 6)
     rows = "".join(f"{0.1 * at:.1f} 0.1\n" for at in range(7))
     path = tmp_path / "long.txt"
     path.write_text({**AT2, "table": rows}[form])

@@ -13,7 +13,7 @@ from scipy.signal import detrend
 
 import studies
 from analytic import GRAVITY, Record, RigidBlock, simulate
-from analytic.accelerograms.units import UNITS
+from analytic.accelerograms import UNITS
 from studies.__main__ import run
 from studies.cases.accelerograms import read_record
 
@@ -182,6 +182,28 @@ def test_tables_that_leave_no_doubt(text, written):
     record = read_record(written(text))
     assert record.dt == 1.0
     assert record.samples[:2].tolist() == [9.81, 19.62]
+
+
+@pytest.mark.parametrize(
+    ("text", "dt"),
+    [
+        ("0.1\n0.2\n-0.3\n", 0.005),
+        ("# a title, units: g\n0.1 0.2 -0.3\n", 0.005),
+        ("3 0.0050\n0.1\n0.2\n-0.3\n", None),
+        ("some label, units of g\n3 0.0050\n0.1\n0.2\n-0.3\n", 0.005),
+    ],
+)
+def test_one_column_with_a_step(text, dt, written):
+    """The step is given, or stands with the number of samples above them."""
+    record = read_record(written(text), "g", None, dt)
+    assert record.dt == 0.005
+    assert record.samples == pytest.approx([0.981, 1.962, -2.943], rel=1e-15)
+
+
+@pytest.mark.parametrize("text", [AT2["series"], "3 0.01\n1\n2\n3\n", "0 1\n0.1 2\n0.2 2\n"])
+def test_a_step_that_the_file_states_otherwise_is_refused(text, written, capsys):
+    asked = ["compare", *ASKED, written(text), "--units", "g", "--record-dt", "0.02"]
+    refused(capsys, asked, "--record is", "--record-dt must not be 0.02")
 
 
 def test_times_printed_in_few_decimals_are_equal_steps(written):

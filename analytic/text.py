@@ -1,4 +1,4 @@
-"""The file of a record as lines of text and their numbers, or the reason why it is none."""
+"""A text file of numbers, and its words as numbers, or the reason why it is none."""
 
 import math
 import re
@@ -26,8 +26,6 @@ NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 PLAIN = re.compile(NUMBER, re.ASCII)
 NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")
-KINDS = {"d": "a folder", "p": "a named pipe", "s": "a socket"}
-"""How the mode of what is no regular file begins -> what it is, if not a device."""
 
 
 def lines_of(path: Path) -> list[str]:
@@ -54,11 +52,11 @@ def lines_of(path: Path) -> list[str]:
 
 def _content(path: Path) -> bytes:
     """Return the bytes of a regular file of bearable size; nothing else is opened."""
+    kinds = {"d": "a folder", "p": "a named pipe", "s": "a socket"}
     try:
         found = path.stat()
         if not stat.S_ISREG(found.st_mode):
-            kind = KINDS.get(stat.filemode(found.st_mode)[0], "a device")
-            raise ValueError(f"it is {kind}")
+            raise ValueError(f"it is {kinds.get(stat.filemode(found.st_mode)[0], 'a device')}")
         with path.open("rb") as file:
             content = file.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
@@ -74,13 +72,7 @@ def _content(path: Path) -> bytes:
 
 
 def too_long(count: int, about: str = "") -> ValueError:
-    """Return the refusal of a record of so many samples, with what it would take.
-
-    Parameters
-    ----------
-    count : int, samples
-    about : str, what stands before their number in the message, as "some "
-    """
+    """Return the refusal of a record of so many samples, with what it would take."""
     minutes, gigabytes = count * SECONDS_A_SAMPLE / 60.0, count * BYTES_A_SAMPLE * 1e-9
     return ValueError(
         f"it holds {about}{count} samples, for which one exact solution would take some "
@@ -98,26 +90,6 @@ def is_number(word: str) -> bool:
     return bool(PLAIN.fullmatch(word) or NOT_FINITE.fullmatch(word))
 
 
-def number(word: str, line: int) -> float:
-    """Return the number that a word of a line is.
-
-    Parameters
-    ----------
-    word : str
-    line : int, its number in the file, for the message
-
-    Raises
-    ------
-    ValueError
-        If it is no finite number in plain digits.
-    """
-    try:
-        return finite_number(word)
-    except ValueError as error:
-        said = shown(word)[1:-1] if is_number(word) else shown(word)
-        raise ValueError(f"line {line}: {said} must be {error}") from error
-
-
 def finite_number(word: str) -> float:
     """Return the number that a word is; ValueError says what else it must be.
 
@@ -125,37 +97,14 @@ def finite_number(word: str) -> float:
     """
     if not is_number(word):
         raise ValueError(f"a number{' with a decimal point' if ',' in word else ''}")
-    value = float(word)
-    if not math.isfinite(value):
+    if not math.isfinite(float(word)):
         raise ValueError("a finite number")
     if underflows(word):
         raise ValueError(f"0, or at least {math.ulp(0.0):g}")
-    return value
+    return float(word)
 
 
 def underflows(word: str) -> bool:
     """Whether a word is a number other than 0 that floating point makes 0."""
     zero = is_number(word) and float(word) == 0.0
     return zero and re.search("[1-9]", re.split("[eE]", word)[0]) is not None
-
-
-def whole(name: str, line: int, word: str) -> int:
-    """Return the number of samples that a line of a header says.
-
-    Parameters
-    ----------
-    name : str, what the header calls it
-    line : int, number of the line
-    word : str
-
-    Raises
-    ------
-    ValueError
-        If it is no whole number in plain digits, or above MOST_SAMPLES.
-    """
-    if not (word.isascii() and word.isdecimal()):
-        raise ValueError(f"line {line}: {name} is {shown(word)}; it must be whole")
-    count = int(word[:12])
-    if count > MOST_SAMPLES:
-        raise too_long(count)
-    return count
