@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache, partial
-from time import perf_counter
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
-from analytic.response import Reason, Response
-from engines.declaration import Stepping
-from studies.cases.extreme import Extreme, contact_settings, extremes, takes_spring
+from analytic.response import Response
+from studies.cases.extreme import Extreme, extremes
 from studies.kit.jobs import Job, Question, Row, ask, summary, unanswered
 from studies.kit.options import Running
 from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
 from studies.measures.energy import SAMPLES
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
-from studies.measures.verdicts import ACCEPTED, ENERGY_BAND, Verdict, invalidity, judge
+from studies.measures.verdicts import ACCEPTED, ENERGY_BAND, Verdict, judge
 from studies.sources.registry import core_sources, resolve
 
 if TYPE_CHECKING:
@@ -29,15 +27,13 @@ if TYPE_CHECKING:
 
 SOLVERS = ("rk4", "average-acceleration", "dop853", "radau")
 METHODS = ("exact", *SOLVERS, *core_sources("", "fixed", "naive"))
-LIMIT_S, TRIED_S, ANSWER_S, RUN_S = 600.0, 540.0, 54.0, 60.0
-"""Time limit of a row [s], when no further setting is tried, and what an answer and a run with
-another setting may take, which the limits in steps keep far from that."""
-ANSWER_STEPS, REMEDY_STEPS, SEARCH_STEPS = 5_000_000, 2_000_000, 500_000
-"""Steps that an answer, a remedy and a run of a search may take."""
-NOTHING = "none of those tried"
+LIMIT_S, RUN_S = 600.0, 60.0
+"""Time limit of a row, and of a run of an engine [s]."""
+MOST_STEPS = {"matrix": 5_000_000, "steps": 500_000}
+"""Steps that a run of an engine may take, in each table."""
 GOOD = [verdict.value for verdict in ACCEPTED]
-LARGEST = ["largest_stable", "largest_accurate", "stable_over_contact", "accurate_over_contact"]
-STEPS = ["case", "contact_s", "factor", "source", "outcome", *LARGEST, "runs", "invalid", "message"]
+LARGEST = ["largest_stable", "largest_accurate"]
+STEPS = ["case", "factor", "source", "outcome", *LARGEST, "message"]
 START, SMALLEST_STEP, LARGEST_STEP = 0.01, 1e-4, 1.0
 """p dt from which a search sets out, and between which it searches."""
 FACTOR, QUICK_FACTOR = 1.05, 1.3
@@ -56,10 +52,10 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return a job for each extreme case and source, and a search for each source that steps."""
     factor = QUICK_FACTOR if quick else FACTOR
     steps = [
-        _job(case, source, {}, table="steps", contact_s=contact_s, factor=factor)
+        _job(case, source, {}, table="steps", factor=factor)
         for case in (PROBLEMS[1:2] if quick else PROBLEMS)
         for source in sources
-        for contact_s in contact_times(case, source)
+        if resolve(source).stepping
     ]
     return [*matrix_jobs(sources, quick), *steps]
 
@@ -80,54 +76,26 @@ def _job(case: Extreme, source: str, options: Mapping[str, Any], **labels: Any) 
     return Job(labels={**labels, "case": case.name}, case=asked, source=source, options=options)
 
 
-def contact_times(case: Extreme, source: str) -> tuple[float, ...]:
-    """Return the contact times [s] to try a source that steps with, nan for one without its own."""
-    asked = resolve(source)
-    if not asked.stepping:
-        return ()
-    if source.endswith(":fixed") and takes_spring(asked):
-        return (math.nan, 0.01 / case.block.p)  # a contact that does not follow the step, too
-    return (asked.used.contact_s if asked.engine else math.nan,)
-
-
 def measure(job: Job) -> Row:
-    """Return the verdict on an answer and the first setting that mends it, or the largest steps."""
-    until, label, lost = perf_counter() + TRIED_S, job.labels, job.lost
-    searched = label["table"] == "steps"
+    """Return the verdict on an answer, or the largest steps."""
+    table, searched = job.labels["table"], job.labels["table"] == "steps"
     cases = PROBLEMS if searched else extremes(False)
-    case = next(case for case in cases if case.name == label["case"])
+    case = next(case for case in cases if case.name == job.labels["case"])
+    limits = {"time_limit_s": RUN_S, "max_steps": MOST_STEPS[table]} if job.asked.engine else {}
 
-    def tried(
-        source: str, options: Mapping[str, Any], steps: int, most_s: float = RUN_S
-    ) -> Response:
-        left = min(most_s, until - perf_counter())
-        if left <= 0.0:
-            return Response.failure("no time was left to try it", reason=Reason.UNDECIDED)
-        limits = {"time_limit_s": left, "max_steps": steps} if resolve(source).engine else {}
-        return ask(replace(job, source=source, options={**options, **limits}))
+    def respond(options: Mapping[str, Any]) -> Response:
+        return ask(replace(job, options={**options, **limits}))
 
-    if searched and lost is not None:
-        return unanswered(lost.message)
+    if searched and job.lost is not None:
+        return unanswered(job.lost.message)
     if searched:
-        step = partial(tried, job.source, steps=SEARCH_STEPS)
-        return largest_steps(case, job.source, label["contact_s"], label["factor"], step)
-    response = tried(job.source, job.options, ANSWER_STEPS, ANSWER_S)
-    found = judge(case, job.source, response)
-    wrong = found["verdict"] not in GOOD and lost is None
-    mending = (
-        words
-        for words, source, options in (remedies(case, job.source) if wrong else ())
-        if judge(case, source, tried(source, options, REMEDY_STEPS))["verdict"] in GOOD
-    )
-    return {**summary(response), **found, "remedy": next(mending, NOTHING if wrong else "")}
+        return largest_steps(case, job.source, job.labels["factor"], respond)
+    response = respond(job.options)
+    return {**summary(response), **judge(case, job.source, response)}
 
 
 def largest_steps(
-    case: Extreme,
-    source: str,
-    contact_s: float,
-    factor: float,
-    ask: Callable[[Mapping[str, Any]], Response],
+    case: Extreme, source: str, factor: float, respond: Callable[[Mapping[str, Any]], Response]
 ) -> Row:
     """Return the largest step of a source that is stable, and that is accurate, p dt.
 
@@ -135,15 +103,10 @@ def largest_steps(
     no energy, accurate one with which the verdict is good as well. Both are nan where there is
     none; message is that of the response with the largest accurate step, or else with START.
     """
-    contact = contact_s * case.block.p
 
     @cache
     def run(step: float) -> tuple[Response, Row]:
-        options: Row = {"step": step}
-        # nan where the contact follows the step, as it does where it takes a spring
-        if not math.isnan(contact) and takes_spring(resolve(source)):
-            options["settings"] = contact_settings(source, contact, step)
-        response = ask(options)
+        response = respond({"step": step})
         return response, judge(case, source, response)
 
     def stable(step: float) -> bool:
@@ -155,14 +118,10 @@ def largest_steps(
         return stable(step) and run(step)[1]["verdict"] == Verdict.GOOD.value
 
     most = [largest_good(good, factor) for good in (stable, accurate)]
-    runs = run.cache_info().currsize
     best, _ = run(START if math.isnan(most[1]) else most[1])
-    return {
-        # a search that ends is an answer, though it be that no step is stable
-        "outcome": "searched",
-        **dict(zip(LARGEST, (*most, *(step / contact for step in most)), strict=True)),
-        **{"runs": runs, "invalid": invalidity(case, source), "message": best.message},
-    }
+    # a search that ends is an answer, though it be that no step is stable
+    found = {"outcome": "searched", "message": best.message}
+    return {**found, **dict(zip(LARGEST, most, strict=True))}
 
 
 def largest_good(good: Callable[[float], bool], factor: float) -> float:
@@ -188,37 +147,6 @@ def largest_good(good: Callable[[float], bool], factor: float) -> float:
     return low
 
 
-def remedies(case: Extreme, source: str) -> Iterator[tuple[str, str, Row]]:
-    """Yield settings to try: in words, the source and its options, which are not the case's."""
-    asked, options = resolve(source), case.options(source)
-    if asked.kind == "solver":
-        for step in (1e-3, 1e-4):
-            words = f"p dt {step:g}, events to 1e-13"
-            yield words, source, {"step": step, "event_tolerance": 1e-13}
-    if asked.kind == "peer":
-        yield "rtol 1e-12", source, {"rtol": 1e-12}
-    if not asked.engine:
-        return
-    engine, preset = asked.declared, asked.used
-    tuned = preset is not engine.presets[0]
-    plain = {name: value for name, value in options.items() if name != "settings"}
-    better = {name: value for name, value in plain.items() if name != "step"}
-    if tuned and engine.remedy:
-        words = ", ".join(f"{name} {value:g}" for name, value in engine.remedy.items())
-        settings = {**options.get("settings", {}), **engine.remedy}
-        yield words, source, {**options, "settings": settings}
-    if case.contact is not None:
-        yield "the preset's own contact", source, plain
-    if case.step_s is not None:
-        yield "the preset's own step", source, better
-    elif tuned:
-        step = 1e-4 if preset.stepping is Stepping.FIXED else 5e-4
-        yield f"p dt {step:g}", source, {**options, "step": step}
-    for other in engine.presets[1:] if preset is not engine.best else ():
-        if other is not preset or better != options:
-            yield f"preset {other.name}", f"{engine.name}:{other.name}", better
-
-
 def without_result(rows: Sequence[Row]) -> list[Row]:
     """Return the rows of sources that gave no result at all; other failures are answers."""
     answered = {row["source"] for row in rows if row["outcome"] != "failed"}
@@ -228,12 +156,9 @@ def without_result(rows: Sequence[Row]) -> list[Row]:
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the matrix of cases and sources, and the largest steps."""
     searched = rows["table"] == "steps"
-    own = ["table", "contact_s", "factor", "runs", *LARGEST]
-    matrix = rows[~searched].drop(columns=own, errors="ignore")
-    return {
-        "stability": matrix.astype({"impacts": int, "steps": int}),
-        "steps": rows.loc[searched].reindex(columns=STEPS).astype({"runs": int}),
-    }
+    matrix = rows[~searched].drop(columns=["table", "factor", *LARGEST], errors="ignore")
+    whole = matrix.astype({"impacts": int, "steps": int})
+    return {"stability": whole, "steps": rows.loc[searched].reindex(columns=STEPS)}
 
 
 def by_preset(matrix: pd.DataFrame) -> pd.DataFrame:
@@ -275,25 +200,15 @@ def finding(tables: Tables) -> str:
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
-    """Return scores by preset, verdicts, failures and what mends them, and the largest steps."""
+    """Return scores by preset, verdicts, failures, and the largest steps."""
     matrix, steps = tables["stability"], tables["steps"]
-    wrong = failures(matrix)
-    unbounded = [reason.name for reason in (Reason.DIVERGED, Reason.THROWN, Reason.FAULT)]
-    wrong = wrong.assign(
-        unbounded=wrong["failure"].isin(unbounded), mended=~wrong["remedy"].isin(["", NOTHING])
-    )
-    kinds = wrong.groupby("verdict", sort=False)[["unbounded", "mended"]].agg("sum")
-    kinds.insert(0, "failures", wrong["verdict"].value_counts())
     doubtful = matrix.loc[matrix["verdict"] == Verdict.INVALID.value, ["case", "invalid"]]
     return {
         "Valid cases that engines predict, by preset": by_preset(matrix),
         "Verdicts on the extreme cases": verdicts(matrix),
-        "Failures, those without a bound, and those mended by another setting": kinds.reset_index(),
-        "Failures, and what mends each": wrong[["case", "source", "reason", "remedy"]],
+        "Failures": failures(matrix)[["case", "source", "reason"]],
         "Cases for which the reference does not hold": doubtful.drop_duplicates("case"),
-        "Largest steps, p dt, and over the contact's time": (
-            steps[["case", "source", "contact_s", *LARGEST]]
-        ),
+        "Largest steps, p dt": steps[["case", "source", *LARGEST]],
     }
 
 
@@ -309,11 +224,9 @@ STUDY = Study(
     question="Which methods stay finite, right and accurate in stiff and extreme cases?",
     help="""Stiff and extreme cases: who stays finite, keeps the outcome and the energy.
 
-The outcome, the peak and the energy of each method in extreme cases, the setting that mends a
-failure, and the largest stable and accurate steps. Takes some minutes. A failure is an answer: the
-exit code is 1 only where a source gives no result at all. With less than the default --time-limit
-a case may be given up while settings are tried. Writes stability.csv, steps.csv, findings.txt and a
-picture.""",
+The outcome, the peak and the energy of each method in extreme cases, and the largest stable and
+accurate steps. Takes some minutes. A failure is an answer: the exit code is 1 only where a source
+gives no result at all. Writes stability.csv, steps.csv, findings.txt and a picture.""",
     quick="Fewer cases, and steps to 30 %: less than a minute on 2 cores.",
     sources=METHODS,
     jobs=jobs,

@@ -36,9 +36,9 @@ def alone(monkeypatch):
 def few(monkeypatch):
     """Let a score ask two jobs of each table and preset; give what returns these of an engine.
 
-    The first, on which all is well, and another; nobody looks for what mends a wrong one.
+    The first, on which all is well, and another.
     """
-    from studies import score, stability
+    from studies import score
 
     everything = score.jobs
 
@@ -50,5 +50,4 @@ def few(monkeypatch):
         return found
 
     monkeypatch.setattr(score, "jobs", chosen)
-    monkeypatch.setattr(stability, "remedies", lambda *_: ())
     return chosen

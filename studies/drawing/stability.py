@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from textwrap import fill
 from typing import Any
 
@@ -30,39 +30,26 @@ MARKS = {
     Verdict.INVALID: ("#FFFFFF", "○", "#555555", "////"),
 }
 """Verdict -> its cell's colour (Okabe and Ito's palette), symbol, colour of that, hatching."""
-WORDS = {
-    "onset − 1e-6": "pulse 1e-6 below the onset",
-    "onset + 1e-6": "pulse 1e-6 above the onset",
-    "boundary − 1e-6": "1e-6 below overturning",
-    "boundary + 1e-6": "1e-6 above overturning",
-    "boundary after impact − 1e-6": "the same after an impact, below",
-    "boundary after impact + 1e-6": "the same after an impact, above",
-    "ω/p 0.01": "slow pulse, ω/p 0.01",
-    "ω/p 0.01, over": "the same, overturning",
-    "ω/p 10": "fast pulse, ω/p 10",
-    "H/B 20": "slender, H/B 20",
-    "H/B 1": "squat, H/B 1",
-    "60 s at rest": "pulse too weak, 60 s at rest",
-    "density 1e-6": "density 1e-6 of water's",
-    "density 1e9": "density 1e9 of water's",
-    "contact of 0.1/p": "soft contact, time 0.1/p",
-    "contact of 0.01/p": "contact time 0.01/p",
-    "contact of 1e-3/p": "contact time 1e-3/p",
-    "contact of 1e-5/p": "stiff contact, time 1e-5/p",
-}
-"""Name of a case -> what stands beside its row, where the name needs words."""
 ACROSS = 22
 """Methods side by side at most; more stand in a panel below."""
 
 
 def draw_matrix(rows: pd.DataFrame, title: str) -> Figure:
     """Draw the cases as rows and the methods as columns, those of a preset side by side."""
-    groups, cases = _groups(rows["source"].unique()), rows.drop_duplicates("case")
-    most = max(sum(map(len, panel.values())) for panel in groups)
+    cases = rows.drop_duplicates("case")
+    panels: list[dict[str, list[str]]] = [{}]
+    members: dict[str, list[str]] = {}
+    for source in rows["source"].unique():
+        members.setdefault(preset_of(source), []).append(source)
+    for preset, sources in members.items():
+        if panels[-1] and sum(map(len, panels[-1].values())) + len(sources) > ACROSS:
+            panels.append({})
+        panels[-1][preset] = sources
+    most = max(sum(map(len, panel.values())) for panel in panels)
     width = 4.2 + (0.3 if most > 14 else 0.5) * most
-    size = (max(width, 7.5), (0.235 * len(cases) + 1.7) * len(groups) + 1.5)
-    drawing, grid = sheet(size, len(groups))
-    for axes, panel in zip(grid, groups, strict=True):
+    size = (max(width, 7.5), (0.235 * len(cases) + 1.7) * len(panels) + 1.5)
+    drawing, grid = sheet(size, len(panels))
+    for axes, panel in zip(grid, panels, strict=True):
         _panel(axes, rows, cases, panel)
         axes.set_xlim(0, most)
     drawing.suptitle(fill(title, 75), fontsize=12)
@@ -76,22 +63,10 @@ def draw_matrix(rows: pd.DataFrame, title: str) -> Figure:
     return drawing
 
 
-def _groups(sources: Iterable[str]) -> list[dict[str, list[str]]]:
-    """Return for each panel its presets, empty for what is no engine, and who has each."""
-    found: dict[str, list[str]] = {}
-    for source in sources:
-        found.setdefault(preset_of(source), []).append(source)
-    panels: list[dict[str, list[str]]] = []
-    for preset, members in found.items():
-        if not panels or sum(map(len, panels[-1].values())) + len(members) > ACROSS:
-            panels.append({})
-        panels[-1][preset] = members
-    return panels
-
-
 def _panel(
     axes: Axes, rows: pd.DataFrame, cases: pd.DataFrame, groups: Mapping[str, Sequence[str]]
 ) -> None:
+    """Paint a cell for each case and method; name presets above, exact peaks beside."""
     sources, names = [*itertools.chain(*groups.values())], list(cases["case"])
     for row in rows[rows["source"].isin(sources)].to_dict("records"):
         i, j = sources.index(row["source"]), names.index(row["case"])
@@ -100,26 +75,26 @@ def _panel(
         axes.add_patch(Rectangle((i, j), 1, 1, fill=False, ec="white", lw=1.2))
         axes.text(i + 0.5, j + 0.52, symbol, ha="center", va="center_baseline", color=ink)
     _name_methods(axes, rows, sources, len(names))
-    axes.set_yticks([j + 0.5 for j in range(len(names))], [WORDS.get(it, it) for it in names],
-                    fontsize=8.5)  # fmt: skip
+    axes.set_yticks([j + 0.5 for j in range(len(names))], names, fontsize=8.5)
     beside: dict[str, Any] = {"va": "center", "fontsize": 7.5, "color": "#555555"}
     for j, (peak, outcome) in enumerate(cases[["exact_peak", "exact_outcome"]].to_numpy()):
         text = f"{peak:.3g} θcr" if outcome == "rocked" else outcome
         axes.text(len(sources) + 0.2, j + 0.5, text, **beside)
     axes.text(len(sources) + 0.2, -0.4, "exact peak", **beside)
-    ends = list(itertools.accumulate(map(len, groups.values())))
-    for preset, end in zip(groups, ends, strict=True):
+    line: dict[str, Any] = {"color": "#666666", "lw": 0.8, "clip_on": False}
+    end = 0
+    for preset, members in groups.items():
+        if end:
+            axes.plot([end, end], [-1.0, len(names) + 1], **line)
         heading, colour = "models and SciPy", "#000000"
         if preset:
             heading, colour = look_of(preset).short, look_of(preset).colour
-        if len(groups[preset]) < 4:
+        if len(members) < 4:
             heading = heading.replace(" ", "\n")
-        axes.annotate(heading, (end - 0.5 * len(groups[preset]), 0.0), (0.0, 72.0),
+        axes.annotate(heading, (end + 0.5 * len(members), 0.0), (0.0, 72.0),
                       textcoords="offset points", ha="center", va="bottom", fontsize=9.5,
                       weight="bold", color=colour)  # fmt: skip
-    line: dict[str, Any] = {"color": "#666666", "lw": 0.8, "clip_on": False}
-    for end in ends[:-1]:
-        axes.plot([end, end], [-1.0, len(names) + 1], **line)
+        end += len(members)
     for j, (before, after) in enumerate(itertools.pairwise(cases["group"]), start=1):
         if before != after:
             axes.plot([-0.2, len(sources) + 0.2], [j, j], **line)

@@ -157,7 +157,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     """Return its errors beside the published ones, its verdicts, what helps it, its moments."""
     extremes, along = tables[EXTREMES], precision.work_precision(tables[STEPS])
     among = {"this engine": joint(along), "published": joint(precision.engines_of(published()))}
-    wrong = stability.failures(extremes)
     return {
         "The paper's cases; errors of the peak are relative, over those that survive": (
             swept(tables).drop(columns=["figure", "max_difference"])
@@ -170,9 +169,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
             if (best := cheapest_below(lines, target)) is not None
         ),
         "Verdicts on extreme cases": stability.verdicts(extremes),
-        "Failures in extreme cases, and the first setting that avoids each": (
-            wrong[["case", "source", "reason", "remedy"]]
-        ),
+        "Failures in extreme cases": stability.failures(extremes)[["case", "source", "reason"]],
         "The moment of a step at which its velocities hold, of which 1 is the end; by what part a "
         "block that is let go turns too far, and with half the step": tables[MOMENTS],
         **{
