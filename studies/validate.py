@@ -1,4 +1,4 @@
-"""Random cases that no setting was tuned on: as they are, at half the step, at published steps."""
+"""Random cases that no setting was tuned on: as they are, or also at half the step."""
 
 from __future__ import annotations
 
@@ -16,23 +16,19 @@ from cyclopts import Parameter
 from analytic import simulate
 from analytic.block import Rocker
 from analytic.response import Outcome
-from engines import ENGINES, installed_engines
 from studies.cases.drawn import Drawn, RandomCase, census, draw
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import Count, Positive, Yes, one_of, refuse_both, refuse_given
+from studies.kit.arguments import Count, Yes, one_of, refuse_both, refuse_given
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.options import CASE_BYTES, Computing, EffortOptions, Yours, refuse_excess
+from studies.kit.options import Computing, EffortOptions, Yours
 from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
-from studies.measures import published
 from studies.measures.differences import (
     WELL_CONDITIONED,
     conditioning_of,
-    exact_peaks,
     sensitivity_of,
     with_reference,
 )
-from studies.measures.finer import with_every_finer
 from studies.measures.halving import (
     BOUNDED,
     CALIBRATE,
@@ -43,38 +39,31 @@ from studies.measures.halving import (
     halved,
 )
 from studies.measures.presets import titled
-from studies.measures.published import PUBLISHED, SETTING, TARGETS
 from studies.measures.wrongness import counted, wrong_in
 from studies.sources.registry import core_sources
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-CASES = {"": (500, 100), "halves": (300, 20), "published_steps": (500, 20)}
+CASES = {False: (500, 100), True: (300, 20)}
 TESTS = (100, 10)
-"""Number of random cases, in full and quickly: for each form, and of those that test factors."""
+"""Random cases, in full and quickly: without --halves and with it, and of those that test."""
 
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options(EffortOptions):
-    """Which random cases, and at which steps.
+    """Which random cases, and whether at half the step, too.
 
     Attributes
     ----------
     halves
         Run every engine at half its step, too, and find the factor with which the difference of
         the two peaks bounds the error.
-    published_steps
-        Run every preset of the engines at each published step that keeps an error of 10 % on the
-        published cases.
     cases
         Number of random cases; by default 500, with --halves 300.
     tests
         Number of other random cases, on which the factors of --halves are tried; by default 100.
-    share
-        Time [s] for each of --published-steps, by default 20: where all cases would take longer
-        there are fewer, but at least 50.
     seed
         Seed of the random numbers, a positive whole number; another one draws other cases.
     scene
@@ -82,10 +71,8 @@ class Options(EffortOptions):
     """
 
     halves: bool = False
-    published_steps: bool = False
     cases: Count | None = None
     tests: Count | None = None
-    share: Positive | None = None
     seed: Count = 1
     scene: Annotated[Drawn, one_of(Drawn)] = "block"
     yours: Yours = Yours()  # noqa: RUF009
@@ -96,41 +83,26 @@ class Options(EffortOptions):
         own = self.yours.options(sources, system)
         return {source: {**self.options(source), **own[source]} for source in sources}
 
-    def refuse_conflicts(self) -> None:
-        """Refuse options that say nothing beside the others."""
-        refuse_both(halves=self.halves or None, published_steps=self.published_steps or None)
-        refuse_both(dt=self.yours.dt, step=self.step)
-        if not self.halves:
-            refuse_given({"tests": self.tests}, "only with --halves")
-        if not self.published_steps:
-            refuse_given({"share": self.share}, "only with --published-steps")
-            return
-        own = {"step": self.step, "accuracy": self.accuracy, **asdict(self.yours)}
-        scene = {"scene": None if self.scene == "block" else self.scene}
-        refuse_given({**own, **scene}, "only without --published-steps")
-
 
 def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
     """Return the jobs in the order of the table: case by case, source by source."""
-    options.refuse_conflicts()
-    form = next((name for name in CASES if name and getattr(options, name)), "")
-    cases, tests = options.cases or CASES[form][quick], options.tests or TESTS[quick]
-    if form == "published_steps":
-        return _at_published_steps(sources, cases, options)
+    refuse_both(dt=options.yours.dt, step=options.step)
+    if not options.halves:
+        refuse_given({"tests": options.tests}, "only with --halves")
+    cases, tests = options.cases or CASES[options.halves][quick], options.tests or TESTS[quick]
     options.refuse_idle(sources)
-    if form == "halves":
+    # the exact solution says which cases are kept
+    asked, count, everyone = f"--cases is {cases}", cases, tuple(sources)
+    if options.halves:
+        asked, count, everyone = f"{asked}, --tests {tests}", cases + tests, 3 * everyone
+    Computing().refuse_too_much(asked, count, ("exact", *everyone), yes=options.yes, effort=options)
+    if options.halves:
         return _with_halves(sources, cases, tests, options)
-    _refuse_too_much(f"--cases is {cases}", cases, sources, options)
     return [
         _job({"seed": options.seed}, case, source, settings)
         for case in islice(draw(options.seed, options.scene), cases)
         for source, settings in options.settings(sources, case.block).items()
     ]
-
-
-def _refuse_too_much(asked: str, cases: int, sources: Sequence[str], options: Options) -> None:
-    everyone = ("exact", *sources)  # the exact solution says which cases are kept
-    Computing().refuse_too_much(asked, cases, everyone, yes=options.yes, effort=options)
 
 
 def _job(labels: Row, case: RandomCase, source: str, settings: Row) -> Job:
@@ -139,8 +111,6 @@ def _job(labels: Row, case: RandomCase, source: str, settings: Row) -> Job:
 
 
 def _with_halves(sources: Sequence[str], cases: int, tests: int, options: Options) -> list[Job]:
-    asked = f"--cases is {cases}, --tests {tests}"
-    _refuse_too_much(asked, cases + tests, 3 * tuple(sources), options)
     found = []
     for use, seed, count in ((TEST, options.seed, tests), (CALIBRATE, options.seed + 1, cases)):
         rocked = filter(_rocks, draw(seed, options.scene))
@@ -159,29 +129,8 @@ def _rocks(case: RandomCase) -> bool:
     return simulate(case.block, case.motion).outcome is Outcome.ROCKED
 
 
-def _at_published_steps(engines: Sequence[str], cases: int, options: Options) -> list[Job]:
-    if unknown := [name for name in engines if name not in installed_engines()]:
-        words = "with --published-steps it must be an installed engine, without a preset"
-        raise BadInputError(f"--sources is {unknown[0]!r}; {words}")
-    refuse_excess(f"--cases is {cases}", cases * CASE_BYTES)
-    drawn, share = list(islice(draw(options.seed), cases)), options.share or 20.0
-    known = published.settings(PUBLISHED, engines)
-    keeps = known["max_error"] <= max(TARGETS)
-    tried = known[with_every_finer(keeps, known["engine"], known["preset"])]
-    found = []
-    for line in tried.to_dict("records"):
-        labels = {name: line[name] for name in SETTING}
-        engine, preset, value = labels.values()
-        settings = published.options_at(ENGINES[engine].preset(preset), value)
-        first = drawn[: max(50, int(share / line["wall_s"]))]
-        found += [_job(labels, case, f"{engine}:{preset}", settings) for case in first]
-    return found
-
-
 def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return errors in bands and what was drawn; or factors; or errors at published steps."""
-    if "value" in rows:
-        return {"random": at_published_steps(rows)}
+    """Return errors in bands and what was drawn, or factors."""
     if "half" in rows:
         lines = beside_errors(rows)
         return {"estimate": rows, "estimates": lines, "factors": factors(lines)}
@@ -229,42 +178,8 @@ def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
     return whole.assign(over=over.where(errors.notna() & whole["estimate"].notna()))
 
 
-_, OFF, CALM_OFF = published.COUNTS
-EDGE = 0.1 / WELL_CONDITIONED
-"""Relative change of a pulse that moves the peak of a well conditioned case by less than 10 %; a
-case that overturns is near the edge where so much less, or more, of the pulse does not."""
-
-
-def at_published_steps(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the error and the condition number of each setting and case, in four digits.
-
-    The error is that of the peak, 0 where both overturn or stay at rest, inf where the outcome is
-    another; the condition the larger of |κ|, |κη| and 1, of a case that overturns 1, or inf where
-    it is near the edge.
-    """
-    compared = with_reference(rows)
-    error = compared["error"].abs().where(compared["agrees"], inf).fillna(0.0)
-    falls = compared["exact_outcome"] == "overturned"
-    amplitude = compared["amplitude_g"]
-    weaker, stronger = (
-        exact_peaks(compared.assign(amplitude_g=amplitude * (1.0 + change)))
-        for change in (-EDGE, EDGE)
-    )
-    at_edge = np.where(np.isinf(weaker) & np.isinf(stronger), 1.0, inf)
-    condition = conditioning_of(compared).mask(falls, pd.Series(at_edge, compared.index))
-    numbers = pd.DataFrame({"condition": condition, "error": error})
-    return compared[[*SETTING, "case"]].join(numbers.map("{:.4g}".format).astype(float))
-
-
 def finding(tables: Tables) -> str:
-    """Say what the sources predict; what bounds their errors; or which steps keep an error."""
-    if "random" in tables:
-        known = _at(tables["random"], max(TARGETS))
-        small, every = ((known[name] == 0).sum() for name in (CALM_OFF, OFF))
-        return (
-            f"{small} of {len(known)} settings that keep an error of {part(max(TARGETS))} on the "
-            f"published cases keep it on every well-conditioned random case, and {every} on all."
-        )
+    """Say what the sources predict, or what bounds their errors."""
     if "factors" in tables:
         high = tables["factors"]["factor_95_high"]
         if np.isinf(high).all():
@@ -292,16 +207,6 @@ def finding(tables: Tables) -> str:
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     """Return the lines of each source, and the cases that say most."""
-    if "random" in tables:
-        table, small = tables["random"], f"κ < {WELL_CONDITIONED:g}"
-        known, most = _at(table, max(TARGETS)), part(max(TARGETS))
-        return {
-            "Random cases with a larger error, at all settings of a preset": off(table, OFF),
-            f"Those among them with {small}": off(table, CALM_OFF),
-            f"Settings with a random case of {small} that is off by more than {most}": (
-                known[known[CALM_OFF] > 0]
-            ),
-        }
     if "factors" in tables:
         return {"Estimates, errors, and the factors between them": tables["factors"]}
     errors, s = tables["errors"], sensitivity_of(tables["errors"])
@@ -314,19 +219,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         "The largest errors": worst(errors, 5),
         "Cases that were drawn": tables["drawn"],
     }
-
-
-def _at(table: pd.DataFrame, target: float) -> pd.DataFrame:
-    """Return the settings of random.csv, with how many of their cases are off an error."""
-    return published.counted(table[SETTING].drop_duplicates(), table, target)
-
-
-def off(table: pd.DataFrame, name: str) -> pd.DataFrame:
-    """Return how many cases are off at all settings of each preset, a column for each error."""
-    found = pd.concat([_at(table, target).assign(target=f"{target:g}") for target in TARGETS])
-    uses = ["engine", "preset", "random_cases"]
-    by_use = found.groupby([*uses[:2], "target"], sort=False)[[uses[2], name]].sum().reset_index()
-    return by_use.pivot_table(name, uses, "target", sort=False).astype(int).reset_index()
 
 
 def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
@@ -369,11 +261,11 @@ STUDY = Study(
 Outcomes, quantiles of the error, and how far a small error of the pulse moves the peak of each
 case: its condition numbers, and its sensitivity to errors of 1e-6 and 1e-4. Writes errors.csv,
 drawn.csv and bands.csv. With --halves it writes estimate.csv, estimates.csv and factors.csv: how
-far off an answer is according to the engine itself at half the step. With --published-steps it
-writes random.csv, which `rocking advise` reads. Each needs a folder of its own.""",
+far off an answer is according to the engine itself at half the step. Each needs a folder of its
+own.""",
     sources=core_sources(),
     options=Options,
-    quick="Fewer random cases: 100; with --halves 20 and 10 that test, with --published-steps 20.",
+    quick="Fewer random cases: 100; with --halves 20, and 10 that test.",
     jobs=jobs,
     tabulate=tabulate,
     finding=finding,

@@ -5,9 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from math import inf
 
-import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.drawing.facets import error_scale, panels, rows
@@ -36,7 +34,15 @@ def draw_conditioning(errors: pd.DataFrame) -> Figure:
     grid[0].set(xscale="log", xlim=(0.5 * low, 2.0 * high))
     error_scale(grid[0].xaxis, *grid[0].get_xlim())
     for axes, ((start, end), cases) in zip(grid, bands.items(), strict=True):
-        _boxes(axes, cases, sources)
+        rows(axes, [name_of(source) for source in sources], 10.0)
+        for source, size in cases.groupby("source")["size"]:
+            look = {"color": style_of(str(source)).colour}
+            axes.boxplot(
+                size.clip(lower=LOWEST), positions=[sources.index(source)], widths=0.55,
+                orientation="horizontal", whis=(0, 100), patch_artist=True, manage_ticks=False,
+                medianprops={"color": "black"}, whiskerprops=look, capprops=look,
+                boxprops={"facecolor": look["color"], "alpha": 0.6, "edgecolor": look["color"]},
+            )  # fmt: skip
         words = f"from {start:g}" if end == inf else f"{start:g} to {end:g}" if start else "below 3"
         axes.set_title(f"S {words}: {cases['case'].nunique()} cases", fontsize=10)
     drawing.supxlabel(
@@ -44,27 +50,8 @@ def draw_conditioning(errors: pd.DataFrame) -> Figure:
         "or of an impact's velocity ratio",
         fontsize=10,
     )
-    ends, most = [*bands], [part(cases["size"].max()) for cases in bands.values()]
-    title = f"Peaks are off by up to {most[0]}" if len(sizes) else "No case that both survive"
-    if len(ends) > 1:
-        words = f"{most[0]} below {ends[0][1]:g}, {most[-1]} from {ends[-1][0]:g} on"
-        title = f"Errors grow with the sensitivity S: up to {words}"
-    drawing.suptitle(title, fontsize=12)
+    drawing.suptitle("Errors of the peak grow with the sensitivity S of a case", fontsize=12)
     return drawing
-
-
-def _boxes(axes: Axes, cases: pd.DataFrame, sources: list[str]) -> None:
-    rows(axes, [name_of(source) for source in sources], 10.0)
-    for place, source in enumerate(sources):
-        size = cases.loc[cases["source"] == source, "size"].clip(lower=LOWEST)
-        if len(size):
-            colour = style_of(source).colour
-            axes.boxplot(
-                size, positions=[place], orientation="horizontal", widths=0.55, whis=(0, 100),
-                patch_artist=True, manage_ticks=False, medianprops={"color": "black"},
-                boxprops={"facecolor": colour, "alpha": 0.6, "edgecolor": colour},
-                whiskerprops={"color": colour}, capprops={"color": colour},
-            )  # fmt: skip
 
 
 def draw_estimates(lines: pd.DataFrame) -> Figure:
@@ -72,37 +59,22 @@ def draw_estimates(lines: pd.DataFrame) -> Figure:
     presets = lines["source"].map(preset_of)
     names = in_order(presets)
     drawing, grid = panels(len(names), len(names), (3.4, 3.6), 0.6, sharex=True, sharey=True)
-    bounded: list[float] = []
     for axes, preset in zip(grid, names, strict=True):
-        bounded += _parts(axes, lines[presets == preset])
+        over = lines[presets == preset].dropna(subset="over").groupby("source")["over"]
+        within = over.agg(lambda each: (each <= MARKED).mean()).sort_values(ascending=False)
+        axes.vlines((1.0, MARKED), 0.0, 1.0, color="#999999", linewidth=0.8, linestyle=":")
+        for source, share in within.items():
+            label, colour = f"{title_of(str(source))} {part(share)}", style_of(str(source)).colour
+            axes.ecdf(over.get_group(source).clip(LEAST), label=label, color=colour)
         axes.set(xscale="log", xlim=(LEAST, MOST), ylim=(-0.02, 1.02))
         axes.set_title(in_words(preset), fontsize=9)
         axes.set_xlabel("times the difference to half the step")
+        axes.legend(loc="lower right", frameon=False, handlelength=0, labelcolor="linecolor",
+                    fontsize=9)  # fmt: skip
         axes.grid(alpha=0.25)
     grid[0].set_ylabel("part of the errors that are smaller")
-    if bounded:
-        ends = " to ".join(dict.fromkeys((part(min(bounded)), part(max(bounded)))))
-        words = f"bounds {ends} of an engine's errors"
-        title = f"{MARKED:g} times the difference to half the step {words}"
-        drawing.suptitle(title, fontsize=11)
+    title = (
+        f"Errors within {MARKED:g} times the difference to half the step, in % beside each engine"
+    )
+    drawing.suptitle(title, fontsize=11)
     return drawing
-
-
-def _parts(axes: Axes, lines: pd.DataFrame) -> list[float]:
-    """Draw a line for each source, named in the order of the parts that MARKED bounds: these."""
-    names = []
-    for factor in (1.0, MARKED):
-        axes.axvline(factor, color="#999999", linewidth=0.8, linestyle=":")
-    for source, cases in lines.groupby("source", sort=False):
-        over = np.sort(cases["over"].dropna().to_numpy())
-        if len(over):
-            colour = style_of(str(source)).colour
-            parts = np.arange(len(over) + 1) / len(over)
-            axes.step([LEAST, *np.maximum(over, LEAST)], parts, where="post", color=colour)
-            within = float((over <= MARKED).mean())
-            names.append((within, f"{title_of(str(source))} {part(within)}", colour))
-    # under the lines, which all end above
-    for place, (_, name, colour) in enumerate(sorted(names)):
-        axes.text(0.96, 0.04 + 0.062 * place, name, transform=axes.transAxes, ha="right",
-                  color=colour, fontsize=9)  # fmt: skip
-    return [within for within, _, _ in names]

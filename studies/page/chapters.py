@@ -102,13 +102,6 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
             quick=(*HALVES, "--quick"),
             weaker="So few random cases that no factor has an upper end.",
         ),
-        Part(
-            folder="steps",
-            name="validate",
-            title="Do the steps that keep an error keep it in random cases?",
-            full=("--published-steps",),
-            quick=("--published-steps", "--quick"),
-        ),
     ),
     "Error against run time": (
         Part(folder="precision", name="precision"),
