@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
-from analytic import RigidBlock, RockingFrame, frame_faults, simulate
-from analytic.motion import Motion, SinePulse
-from analytic.record import Record
+from analytic import RigidBlock
+from analytic.motion import Motion
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
-from engines.layouts import BEAM_DEPTH, SPACING, System
+from engines.layouts import System
 from studies.cases.paper import free_rocking_window
 from studies.cases.refusal import BadInputError
 from studies.kit.jobs import Job, Question, Row, ask, summary
@@ -67,8 +65,9 @@ def compare(
         if estimate:
             own_steps = effort.own and yours.dt is None
             row |= _estimated(row, halves.get(name), case.system, own_steps)
-    said = (rows["exact"]["message"], *_faults(case, exact, yours.friction))
-    rows["exact"]["message"] = "; ".join(filter(None, said))
+    if yours.friction is not None and yours.friction < exact.friction_needed:
+        slides = f"slides: needs {exact.friction_needed:.3g}, has {yours.friction:.3g}"
+        rows["exact"]["message"] = "; ".join(filter(None, (rows["exact"]["message"], slides)))
     return [rows[name] for name in sources]
 
 
@@ -121,55 +120,11 @@ def _estimated(row: Row, finer: Row | None, system: System, own_steps: bool) -> 
     return {"estimate": found, "bound": bound, "message": message}
 
 
-def _faults(case: Question, exact: Response, friction: float | None) -> tuple[str, ...]:
-    """Return which premises of the exact solution a friction does not hold."""
-    if friction is None or exact.outcome is Outcome.FAILED:
-        return ()
-    slides = f"slides: needs {exact.friction_needed:.3g}, has {friction:.3g}"
-    found = (slides,) if friction < exact.friction_needed else ()
-    if not isinstance(case.system, RockingFrame):
-        return found
-    sizes = sizes_of(case.system)
-    return (*found, *frame_faults(case.system, case.motion, case.start, **sizes, friction=friction))
-
-
-def sizes_of(frame: RockingFrame) -> dict[str, float]:
-    """Return the distance of a frame's columns and the depth of its beam in the engines [m]."""
-    return {"spacing": SPACING * frame.height, "depth": BEAM_DEPTH * frame.height}
-
-
-def near_edge(case: Question, exact: Response) -> str:
-    """Say where less than a hundredth of the amplitude decides whether the block overturns."""
-    if exact.outcome is Outcome.FAILED or isinstance(case.system, SlidingBlock):
-        return ""
-    for factor in (1.01, 0.99):
-        motion = _scaled(case.motion, factor)
-        other = simulate(case.system, motion, start=case.start, duration=case.duration).outcome
-        falls = [outcome is Outcome.OVERTURNED for outcome in (exact.outcome, other)]
-        if falls[0] != falls[1] and other is not Outcome.FAILED:
-            return (
-                f"the answer hangs on less than 1 % of the amplitude: at {factor:g} "
-                f"times it, the exact block {'overturns' if falls[1] else 'does not overturn'}"
-            )
-    return ""
-
-
-def _scaled(motion: Motion, factor: float) -> Motion:
-    if isinstance(motion, SinePulse):
-        return replace(motion, amplitude=factor * motion.amplitude)
-    return motion.scaled(factor) if isinstance(motion, Record) else motion
-
-
-def is_valid(exact: Response) -> bool | None:
-    """Return whether the pivot stays on the base in the exact solution; None if there is none."""
-    return None if math.isnan(exact.min_normal) else exact.min_normal >= 0.0
-
-
 def records(rows: Sequence[Row], note: str = "") -> list[dict[str, Any]]:
     """Return what a reader gets of each row, by name: numbers may be inf or nan.
 
-    Its columns, with a note at the end of each message; min_normal, friction_needed and valid of
-    the exact solution; slips [m] and the observables of the scene where there are any.
+    A note ends each message; min_normal, friction_needed and valid (whether the pivot stays on the
+    base) are of the exact solution; slips [m] and observables are of the scene, where it has any.
     """
     found: list[dict[str, Any]] = []
     for row in rows:
@@ -178,5 +133,7 @@ def records(rows: Sequence[Row], note: str = "") -> list[dict[str, Any]]:
         item["message"] = "; ".join(filter(None, (item["message"], note)))
         item |= {"min_normal": exact.min_normal, "friction_needed": exact.friction_needed}
         item |= {"slips": list(response.slips)} if response.slips else {}
-        found.append({**item, "valid": is_valid(exact), **response.observables})
+        known = not math.isnan(exact.min_normal)
+        item["valid"] = exact.min_normal >= 0.0 if known else None
+        found.append({**item, **response.observables})
     return found

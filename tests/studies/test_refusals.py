@@ -170,6 +170,13 @@ export CASE --out DIR --engine mujoco --scene slide --friction 0.2 --tilt 0.5 | 
 animate CASE --out film.gif --scene slide --friction 0.2 --tilt 0.1 | only where something rocks
 animate CASE --out film.gif --scene frame --load 2 --dt 0.001 --sources mujoco | it must come with
 compare CASE --load 2 | --load is 2.0; it may be given only with --scene frame
+compare CASE --columns 2 | --columns is 2; it may be given only with --scene frame
+compare CASE --scene frame --load nan | --load is 'nan'; it must be a positive
+compare CASE --scene frame --load 1 --columns 2.5 | --columns is '2.5'; it must be
+compare CASE --scene slide --friction 0 | --friction is 0
+compare CASE --scene slide --friction 0.2 --plot x.png | only where something rocks
+compare CASE --scene slide --friction 0.2 --sources dop853 | 'dop853' cannot be asked so
+compare CASE --scene bridge | --scene is 'bridge'; it must be among block, frame, slide
 animate --results results --load 2 --out film.gif | --load is 2.0 | without --results
 animate CASE --results results --out film.gif | --width | --results
 animate --results results --out film.gif | --results | sweep.csv
