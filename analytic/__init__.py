@@ -7,7 +7,6 @@ are ground times, from the start of the base motion.
 
 from analytic.block import GRAVITY, RigidBlock, Rocker, housner_restitution
 from analytic.conditioning import condition_numbers, conditioning, sensitivities, sensitivity
-from analytic.first_mode import FirstMode, first_mode, rocking_friction
 from analytic.frame import RockingFrame, frame_restitution
 from analytic.frame_forces import frame_demands, frame_faults
 from analytic.maps import Modes, overturning_modes
@@ -23,7 +22,6 @@ __all__ = [
     "GRAVITY",
     "MODELS",
     "Delayed",
-    "FirstMode",
     "History",
     "Impact",
     "Modes",
@@ -39,7 +37,6 @@ __all__ = [
     "Still",
     "condition_numbers",
     "conditioning",
-    "first_mode",
     "frame_demands",
     "frame_faults",
     "frame_restitution",
@@ -47,7 +44,6 @@ __all__ = [
     "integrate",
     "overturning_modes",
     "peak_ratios",
-    "rocking_friction",
     "sensitivities",
     "sensitivity",
     "simulate",

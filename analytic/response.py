@@ -8,8 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.showing import as_curve, as_table
-
 
 class Outcome(enum.Enum):
     """How a response ends."""
@@ -19,20 +17,6 @@ class Outcome(enum.Enum):
     OVERTURNED = "overturned"
     SLID = "slid"
     FAILED = "failed"
-
-    @property
-    def sentence(self) -> str:
-        """The sentence a reader sees."""
-        return _SENTENCES[self]
-
-
-_SENTENCES = {
-    Outcome.AT_REST: "the block never lifted off the base",
-    Outcome.ROCKED: "the block rocked and survived",
-    Outcome.OVERTURNED: "the block overturned",
-    Outcome.SLID: "the block slid and did not rock",
-    Outcome.FAILED: "no usable result",
-}
 
 
 class Reason(enum.Enum):
@@ -151,21 +135,6 @@ class Response:
     sink_m: float = float("nan")
     hop_m: float = float("nan")
     observables: Mapping[str, float] = field(default_factory=dict)
-
-    def _repr_html_(self) -> str:
-        """Return what a notebook shows: a small table, and the curve of a history."""
-        values = {
-            "outcome": f"{self.outcome.value}: {self.outcome.sentence}",
-            "largest θ/θcr": f"{self.peak_ratio:.6g}",
-            "impacts": f"{len(self.impacts)}",
-            "friction needed": f"{self.friction_needed:.4g}",
-            "steps": f"{self.steps} in {1e3 * self.wall_s:.3g} ms",
-            "message": self.message,
-        }
-        told = {name: value for name, value in values.items() if value not in ("", "nan")}
-        if self.history is None:
-            return as_table(told)
-        return as_table(told) + as_curve(self.history.time, self.history.theta, "θ over time")
 
     @classmethod
     def failure(

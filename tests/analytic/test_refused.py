@@ -16,7 +16,6 @@ from analytic import (
     SinePulse,
     SlidingBlock,
     Still,
-    first_mode,
     integrate,
     overturning_modes,
     peak_ratios,
@@ -53,7 +52,6 @@ USUAL = {
     peak_ratios: ARRAYS,
     overturning_modes: ARRAYS,
     overturning_amplitude: {"omega_over_p": 1.0},
-    first_mode: {"amplitude_g": 1.0, "friction": 0.5, "aspect": 2.0},
     frictionless_fall: {"block": BLOCK, "theta": 0.5},
 }
 """What can be asked, and with what it is answered."""
@@ -103,7 +101,6 @@ WRONG = {
         "threads": (0, -1),
     },
     overturning_amplitude: {"half_cycles": (3,), "omega_over_p": (NAN,)},
-    first_mode: {"amplitude_g": (NAN,), "friction": (0.0,), "aspect": (-2.0,)},
     frictionless_fall: {"theta": (BLOCK.alpha,)},
 }
 """Values, of one argument at a time, that are refused by its name and their own."""
