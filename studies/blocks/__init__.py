@@ -27,7 +27,7 @@ from studies.cases.accelerograms import Baseline, baseline_note, recorded
 from studies.cases.paper import free_rocking_window
 from studies.kit import arguments
 from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
-from studies.kit.options import Running
+from studies.kit.options import CASE_BYTES, Running, refuse_excess
 from studies.kit.say import capital, out_of
 from studies.kit.scene_options import refuse_endless
 from studies.kit.store import provenance_of
@@ -224,7 +224,6 @@ def command(
     baseline: Annotated[Baseline, arguments.one_of(Baseline)] | None = None,
     sources: arguments.Sources = ("exact",),
     running: Running = Running(),  # noqa: B008
-    yes: arguments.Yes = False,
 ) -> int:
     """Which blocks of a list overturn under recorded ground motions, with what margin?
 
@@ -260,7 +259,7 @@ def command(
     listed = read_cabinets(cabinets)
     cases = len(listed) * len(grounds) * len(scale)
     asked = f"the list is {str(cabinets)!r}, of {len(listed)} blocks"
-    running.refuse_too_much(asked, cases, ("exact", *sources), yes=yes)
+    refuse_excess(asked, cases * len(sources) * CASE_BYTES)
     study = replace(STUDY, tabulate=partial(tabulate, sources=sources))
     given = {
         "sources": sources,

@@ -12,11 +12,12 @@ import platform
 import sqlite3
 import subprocess
 import time
-from collections.abc import Iterable, Mapping, Sequence
+import tomllib
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
 from functools import cache
-from importlib import metadata
+from operator import methodcaller
 from pathlib import Path
 from typing import Any, Self
 
@@ -42,8 +43,12 @@ from studies.kit.tables import (
 ROWS, PROVENANCE = "rows.sqlite", "provenance.json"
 LOST = ("no result within the time limit", "the process ", "every worker ")
 """How the message of a row begins whose process has ended, which another run may not do."""
-NAMES = ("name", "record")
-"""Labels by which a user knows a case."""
+
+Rows = dict[str, tuple[Maker, Row]]
+"""Key of a job -> what made its row, and the row."""
+
+_plain = methodcaller("item")
+"""Returns a number of numpy as one of Python."""
 
 
 class FolderError(BadInputError):
@@ -61,7 +66,7 @@ class Store:
 
     def __init__(self, folder: Path, study: str, table: str = "") -> None:
         self.folder, self.study, self.table = folder, study, table
-        self._began, self._added = time.perf_counter(), 0
+        self._began, self._computed = time.perf_counter(), 0
         self._taken: list[Row] = []
         self._first = not are_compiled(SOURCES)
         fresh = not (folder / ROWS).exists()
@@ -107,10 +112,9 @@ class Store:
         if self.filled:
             self._fill(jobs, makers)
         rows = self._rows()
-        for key, (_, row) in rows.items():
-            if key not in jobs:
-                words = _unasked(row, [labels_of(job) for job in jobs.values()])
-                raise FolderError(self.folder, f"it also holds results of {words}")
+        if other := [row for key, (_, row) in rows.items() if key not in jobs]:
+            labels = labels_of(next(iter(jobs.values()))) if jobs else ["source"]
+            self._refuse_unasked(other[0], labels)
         found, stale = _sorted(rows, jobs, makers)
         if stale:
             say(f"{len(found)} of {len(jobs)} rows are kept; computed again: {why(stale)}")
@@ -120,35 +124,42 @@ class Store:
             if row["outcome"] != "failed" or not str(row.get("message", "")).startswith(LOST)
         }
 
-    def _rows(self) -> dict[str, tuple[Maker, Row]]:
+    def _rows(self) -> Rows:
         try:
             return _read(self._base)
         except (sqlite3.Error, ValueError, TypeError) as error:
             raise FolderError(self.folder, f"its {ROWS} is damaged ({error})") from error
 
+    def _refuse_unasked(self, row: Mapping[Any, Any], labels: Iterable[str]) -> None:
+        """Refuse a row that is not asked for, by its labels; it may differ in other options."""
+        which = ", ".join(f"{name} {row[name]}" for name in labels if name in row)
+        words = f"it also holds results of {which}; ask for those, too, or use a new folder"
+        raise FolderError(self.folder, words)
+
     def _fill(self, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> None:
         """Take the rows of a folder's table, which its provenance says what made."""
         made = provenance_of(self.folder).get("made", {})
-        keys = {json.dumps(labels_of(job), default=_number): key for key, job in jobs.items()}
+        keys = {json.dumps(labels_of(job), default=_plain): key for key, job in jobs.items()}
         labels = [*labels_of(next(iter(jobs.values())))] if jobs else []
-        for line in table_in(self.folder, self.table).to_dict("records"):
-            row = {str(name): value for name, value in line.items()}
-            name = json.dumps({label: row.get(label) for label in labels}, default=_number)
+        for row in table_in(self.folder, self.table).to_dict("records"):
+            name = json.dumps({label: row.get(label) for label in labels}, default=_plain)
             if name not in keys:
-                raise FolderError(self.folder, f"it also holds results of {_said(row, labels)}")
+                self._refuse_unasked(row, labels)
             if row["source"] in made:
-                self.add(keys[name], row, made[row["source"]])
-        self._added, self.filled = 0, False
+                self._write(keys[name], row, made[row["source"]])
+        self.filled = False
 
     def add(self, key: str, row: Row, maker: Maker) -> None:
-        """Store a row, at once and in one piece."""
-        made = json.dumps(maker, sort_keys=True)
+        """Store a row that was computed, at once and in one piece."""
+        self._write(key, row, maker)
+        self._computed += 1
+
+    def _write(self, key: str, row: Mapping[Any, Any], maker: Maker) -> None:
+        values = key, json.dumps(maker, sort_keys=True), json.dumps(row, default=_plain)
         try:
-            text = json.dumps(row, default=_number)
-            self._base.execute("REPLACE INTO rows VALUES (?, ?, ?)", (key, made, text))
+            self._base.execute("REPLACE INTO rows VALUES (?, ?, ?)", values)
         except sqlite3.Error as error:
             raise FolderError(self.folder, f"its {ROWS} cannot be written ({error})") from error
-        self._added += 1
 
     def take(self, other: Path, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> None:
         """Copy from another folder the rows of some jobs that would be made so here.
@@ -156,37 +167,29 @@ class Store:
         A failure is taken only where its engine is not installed; else it is tried again. A folder
         without such rows is refused.
         """
-        if not (other / ROWS).is_file():
-            words = f"it must be a results folder, with its {ROWS} and {PROVENANCE}"
-            raise FolderError(other, words, "--also")
-        try:
-            base = sqlite3.connect(f"file:{other / ROWS}?mode=ro", uri=True, timeout=0.2)
-            rows = _read(base)
-            base.close()
-        except (sqlite3.Error, ValueError, TypeError) as error:
-            raise FolderError(other, f"its {ROWS} cannot be read ({error})", "--also") from error
+        rows = _rows_of(other)
         found, stale = _sorted(rows, jobs, makers)
         if not found:
             words = f"all its rows are stale ({why(stale)})"
             none = "it holds no row of what is asked for"
             raise FolderError(other, words if stale else none, "--also")
-        mine, before, taken = self._rows(), self._added, list[str]()
-        for key, row in found.items():
-            known = key in mine and not changed(mine[key][0], makers[row["source"]])
-            asked = jobs[key].asked
-            able = not asked.engine or asked.declared.installed
-            if not known and (row["outcome"] != "failed" or not able):
-                taken.append(key)
-                self.add(key, row, rows[key][0])
-        self._added = before
         if stale:
             say(f"not taken from {str(other)!r}: {why(stale)}")
+        mine, count, engines = self._rows(), 0, dict[str, str | None]()
+        for key, row in found.items():
+            source = jobs[key].asked
+            able = not source.engine or source.declared.installed
+            known = key in mine and not changed(mine[key][0], makers[row["source"]])
+            if known or (row["outcome"] == "failed" and able):
+                continue
+            made = rows[key][0]
+            self._write(key, row, made)
+            packages = source.declared.packages if source.engine else ()
+            engines |= {name: made[name] for name in packages if name in made}
+            count += 1
         record = provenance_of(other)
-        engines = [jobs[key].asked for key in taken if jobs[key].asked.engine]
-        names = {name for asked in engines for name in asked.declared.packages}
-        made = {name: rows[key][0].get(name) for key in taken for name in names & {*rows[key][0]}}
         said = {name: record.get(name) for name in ("git", "machine")}
-        self._taken.append({**said, "engines": made, "rows": len(taken)})
+        self._taken.append({**said, "engines": engines, "rows": count})
 
     def finish(
         self,
@@ -209,7 +212,7 @@ class Store:
             "git": commit(),
             **asked,
             "duration_s": round(time.perf_counter() - self._began, 3),
-            **{"rows": rows, "computed": self._added},
+            **{"rows": rows, "computed": self._computed},
             **({"also": self._taken} if self._taken else {}),
         }
         record = {"study": self.study, **versions(before), "git": commit(), "machine": machine()}
@@ -223,10 +226,24 @@ class Store:
         write_record(self.folder, record)
 
 
-def _read(base: sqlite3.Connection) -> dict[str, tuple[Maker, Row]]:
+def _read(base: sqlite3.Connection) -> Rows:
     rows = base.execute("SELECT key, made, row FROM rows").fetchall()
     then = {made: json.loads(made) for made in {made for _, made, _ in rows}}
     return {key: (then[made], json.loads(text)) for key, made, text in rows}
+
+
+def _rows_of(other: Path) -> Rows:
+    """Return the rows of the folder that --also names."""
+    if not (other / ROWS).is_file():
+        words = f"it must be a results folder, with its {ROWS} and {PROVENANCE}"
+        raise FolderError(other, words, "--also")
+    try:
+        base = sqlite3.connect(f"file:{other / ROWS}?mode=ro", uri=True, timeout=0.2)
+        rows = _read(base)
+        base.close()
+    except (sqlite3.Error, ValueError, TypeError) as error:
+        raise FolderError(other, f"its {ROWS} cannot be read ({error})", "--also") from error
+    return rows
 
 
 def _may_be_filled(folder: Path, study: str, table: str) -> bool:
@@ -242,44 +259,17 @@ def labels_of(job: Job) -> Row:
     return {**job.labels, "source": job.source}
 
 
-def _number(value: Any) -> Any:
-    if hasattr(value, "item"):
-        return value.item()
-    raise TypeError(f"{value!r} cannot stand in a row")
-
-
-def _said(row: Row, labels: Iterable[str]) -> str:
-    return ", ".join(f"{name} {row[name]}" for name in labels if name in row)
-
-
-def _unasked(row: Row, asked: Sequence[Row]) -> str:
-    """Say what of a row is not asked for, beside the most like of what is: a label, or settings."""
-    labels = [*dict.fromkeys(name for each in asked for name in each)] or ["source"]
-    nearest = max(
-        asked, key=lambda each: sum(each.get(name) == row.get(name) for name in labels), default={}
-    )
-    for label in labels:
-        if (there := row.get(label)) != (here := nearest.get(label)):
-            if label not in row:
-                return "other options; use a new folder"
-            of = _said(row, [name for name in NAMES if name in labels[: labels.index(label)]])
-            words = f"{of} with {label} {there}, here {here}" if of else f"{label} {there}"
-            return f"{words}; name that, too, or use a new folder"
-    return f"other settings ({_said(row, labels)}); use a new folder"
-
-
 def _sorted(
-    rows: Mapping[str, tuple[Maker, Row]], jobs: Mapping[str, Job], makers: Mapping[str, Maker]
+    rows: Rows, jobs: Mapping[str, Job], makers: Mapping[str, Maker]
 ) -> tuple[dict[str, Row], list[tuple[str, Maker, Maker]]]:
     """Return the rows of jobs that would be made so now, and of the others why not."""
     found, stale = {}, []
-    for key, (then, row) in rows.items():
-        if key in jobs:
-            now = makers[jobs[key].source]
-            if changed(then, now):
-                stale.append((jobs[key].source, then, now))
-            else:
-                found[key] = row
+    for key in rows.keys() & jobs.keys():
+        source, (then, row) = jobs[key].source, rows[key]
+        if changed(then, makers[source]):
+            stale.append((source, then, makers[source]))
+        else:
+            found[key] = row
     return found, stale
 
 
@@ -288,12 +278,8 @@ def project_version() -> str:
     """Return the version of this project, whether it is installed or run from its source."""
     source = ROOT / "pyproject.toml"
     if source.is_file():
-        import tomllib
-
         return str(tomllib.loads(source.read_text(encoding="utf-8"))["project"]["version"])
-    with suppress(metadata.PackageNotFoundError):
-        return metadata.version("rocking")
-    return NOT_INSTALLED
+    return version_of("rocking")
 
 
 def versions(before: Mapping[str, Any]) -> dict[str, Any]:
@@ -302,9 +288,8 @@ def versions(before: Mapping[str, Any]) -> dict[str, Any]:
     An engine that is no longer installed has the version that `before`, a provenance, names.
     """
     engines = {name: version_of(name) for one in ENGINES.values() for name in one.packages}
-    for name, version in before.get("engines", {}).items():
-        if engines.get(name) == NOT_INSTALLED:
-            engines[name] = version
+    known = before.get("engines", {})
+    engines |= {name: known[name] for name in known if engines.get(name) == NOT_INSTALLED}
     return {
         "version": project_version(),
         "python": platform.python_version(),
@@ -318,19 +303,12 @@ def commit() -> dict[str, Any] | None:
     """Return the commit of the source and whether it was edited since; None without git."""
     if not (ROOT / ".git").exists():
         return None
-    words = [
-        "git",
-        "-C",
-        str(ROOT),
-        "describe",
-        "--always",
-        "--abbrev=40",
-        "--exclude=*",
-        "--dirty",
-    ]
+    words = ["git", "describe", "--always", "--abbrev=40", "--exclude=*", "--dirty"]
     with suppress(OSError, subprocess.SubprocessError):
-        done = subprocess.run(words, capture_output=True, text=True, timeout=10, check=True)
-        hash_, _, edited = done.stdout.strip().partition("-")
+        said = subprocess.run(
+            words, cwd=ROOT, capture_output=True, text=True, timeout=10, check=True
+        )
+        hash_, _, edited = said.stdout.strip().partition("-")
         return {"commit": hash_, "edited": bool(edited)}
     return None
 
@@ -338,10 +316,10 @@ def commit() -> dict[str, Any] | None:
 def machine() -> dict[str, Any]:
     """Return the processor, the number of cores and the operating system."""
     cpu = platform.processor() or platform.machine()
-    with suppress(OSError):
-        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-            if line.startswith("model name"):
-                cpu = line.partition(":")[2].strip()
+    with suppress(OSError, StopIteration):
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        named = next(line for line in lines if line.startswith("model name"))
+        cpu = named.partition(":")[2].strip()
     return {"cpu": cpu, "cores": usable_cores(), "os": platform.platform()}
 
 
@@ -369,11 +347,8 @@ def write_record(folder: Path, record: Mapping[str, Any]) -> None:
 
 def engines_of(record: Mapping[str, Any]) -> dict[str, str]:
     """Return the versions of a record's engines, also of those that answered elsewhere."""
-    known = dict(record["engines"])
-    for run in record["runs"]:
-        for taken in run.get("also", ()):
-            known |= taken["engines"]
-    return known
+    taken = [also["engines"] for run in record["runs"] for also in run.get("also", ())]
+    return {name: it for known in (record["engines"], *taken) for name, it in known.items()}
 
 
 def whole_runs(record: Mapping[str, Any]) -> list[dict[str, Any]]:

@@ -18,11 +18,10 @@ from analytic.motion import FloatArray
 from analytic.response import Outcome, Response
 from studies.cases.refusal import BadInputError
 from studies.cases.window import LEAST_ONSETS, Axis, Window
-from studies.kit.arguments import Count, Positive, Yes, as_bad_input, refuse_given
+from studies.kit.arguments import Count, Positive, as_bad_input, refuse_given
 from studies.kit.jobs import Job, Question, Row, answer, ask
-from studies.kit.options import Running, refuse_days, refuse_excess
+from studies.kit.options import Running, refuse_excess
 from studies.kit.say import capital, out_of
-from studies.kit.store import usable_cores
 from studies.kit.study import Study, Tables
 from studies.measures.presets import in_order, in_words, preset_of
 from studies.measures.wrongness import NO_ANSWER, REST
@@ -36,8 +35,6 @@ if TYPE_CHECKING:
 
 STRIP, STRIP_BYTES, COLUMN_BYTES = 250_000, 200.0, 3000.0
 """Cases that are held at a time; about what each holds, and the edges of a column [byte]."""
-CELL_S, COLUMN_S = 2e-5, 0.02
-"""About how long a cell takes on one core, and a column's edges [s]."""
 APPLIES = {"aspect": ("frequency", "size"), "omega_over_p": ("slenderness",), "pulse_hz": ("size",)}
 """Over which abscissae an option says something."""
 ROOM, SPREAD, SHARP = 0.04, 0.03, 1e-6
@@ -97,7 +94,6 @@ class Options:
     columns: Count | None = None
     rows: Count | None = None
     planes: bool = False
-    yes: Yes = False
 
     def window(self, quick: bool) -> Window:
         """Return the plane that is asked for; BadInputError if an option is beyond its limits."""
@@ -117,7 +113,7 @@ def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
         if resolve(name).kind not in ("model", "engine"):
             raise BadInputError(f"--sources names {name!r}; it must name models and engines")
     if options.planes:
-        plain = Options(planes=True, yes=options.yes)
+        plain = Options(planes=True)
         given = {name: it for name, it in asdict(options).items() if it != getattr(plain, name)}
         refuse_given(given, "only without --planes")
         return planes.jobs(sources, quick)
@@ -127,8 +123,6 @@ def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
     asked = f"--columns is {window.columns} and --rows is {window.rows}"
     columns = len(models) * window.columns
     refuse_excess(asked, max(window.rows, STRIP) * STRIP_BYTES + columns * COLUMN_BYTES)
-    seconds = columns * (COLUMN_S + window.rows * CELL_S / usable_cores())
-    refuse_days(asked, seconds, options.yes)
 
     def job(source: str, x: float, onsets: float, **labels: Any) -> Job:
         system, motion = window.case(x, onsets)

@@ -121,12 +121,12 @@ def test_a_measure_of_a_study_depends_on_the_files_that_it_imports():
 
 def test_rows_that_are_not_asked_for_are_refused(tmp_path):
     filled(tmp_path)
-    with pytest.raises(FolderError, match="holds results of case 2; name that, too"):
+    with pytest.raises(FolderError, match="holds results of case 2, source exact; ask for those"):
         filled(tmp_path, JOBS[:2])
-    with pytest.raises(FolderError, match="holds results of source rk4"):
+    with pytest.raises(FolderError, match="holds results of case 1, source rk4"):
         filled(tmp_path, JOBS[::2])
     finer = [dataclasses.replace(job, options={"step": 1e-4}) for job in JOBS[1::2]]
-    with pytest.raises(FolderError, match="other settings"):
+    with pytest.raises(FolderError, match="holds results of case 1, source rk4"):
         filled(tmp_path, [*JOBS[::2], *finer])
 
 

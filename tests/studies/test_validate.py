@@ -247,5 +247,5 @@ def test_a_folder_of_one_form_is_refused_to_another(tmp_path, capsys):
     few = ["validate", "--cases", "2", "--jobs", "1", "--sources", "mujoco", "--out", tmp_path]
     assert run_command([str(word) for word in few]) == 0
     capsys.readouterr()
-    refused(capsys, [*few, "--halves"], str(tmp_path), "other options")
+    refused(capsys, [*few, "--halves"], str(tmp_path), "also holds results")
     refused(capsys, [*few, "--seed", "2"], str(tmp_path), "folder")
