@@ -264,7 +264,7 @@ def _sorted(
 ) -> tuple[dict[str, Row], list[tuple[str, Maker, Maker]]]:
     """Return the rows of jobs that would be made so now, and of the others why not."""
     found, stale = {}, []
-    for key in rows.keys() & jobs.keys():
+    for key in (key for key in rows if key in jobs):
         source, (then, row) = jobs[key].source, rows[key]
         if changed(then, makers[source]):
             stale.append((source, then, makers[source]))
