@@ -1,10 +1,10 @@
 """Physics engines on scenes with exact answers: any scene, any engine, one way of looking at it.
 
-A scene is data: bodies, where they begin, which faces touch (`engines.layouts`), and how the base
+A scene is data: bodies, where they begin, which faces touch (`engines.scene`), and how the base
 moves (`engines.scene`). An adapter builds it, chooses the engine's settings, decides when it steps
 and how its contact holds. It never decides what the state becomes: places and velocities are set
 once, before the first step, and the impact is the engine's. What a preset does besides setting the
-engine is declared (`engines.disclosure.Help`), and so is which scenes it can hold.
+engine is declared (`engines.declaration.Help`), and so is which scenes it can hold.
 
 To add an engine, write one folder beside these and one line in ``engines.registry.OWN``,
 or declare it in a package of your own under the entry point group ``rocking.engines``::
@@ -14,7 +14,7 @@ or declare it in a package of your own under the entry point group ``rocking.eng
 
 It holds
 
-- a frozen settings class, whose defaults are the library's own (`engines.parts.settings`); one
+- a frozen settings class, whose defaults are the library's own (`engines.settings`); one
   setting is called ``friction``, and where they exist ``geometry`` ("box", "corners", "hull"),
   ``planar`` (False frees a body in space) and ``floor`` (how a base that moves is moved, among
   which "position" is by position alone) are called so, because studies put them back;

@@ -4,17 +4,203 @@ import enum
 import importlib.util
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from importlib.metadata import Distribution
-from typing import Any
+from typing import Any, NamedTuple
 
-from engines.disclosure import Citation, Deviation, Help
-from engines.layouts import Ability, System
-from engines.parts.factors import Factor, Rule
 from engines.parts.script import Script
-from engines.parts.settings import largest
-from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene, one_of
+from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Ability, Scene, System
+from engines.settings import one_of
 from engines.world import REST_FACTOR, ROUNDINGS, Resolution, World
+
+
+class Help(enum.Enum):
+    """What an adapter does for a preset, besides setting the engine once."""
+
+    STEPS = "steps that land on impacts, uplifts and the corners of the motion"
+    PHASES = "a contact that holds as firmly as each phase of the motion needs"
+    REFLECTION = "the pivot's velocity given back while the block turns about it"
+    MARGIN = "the pivot kept in contact over the gap by which it rises in a step"
+    PRELOAD = "the pivot pressed by its load from the start of a step"
+    POSITIONS = "positions moved by the adapter, from the engine's velocities"
+
+
+class Deviation(enum.Enum):
+    """What an engine gets wrong with its defaults, without a word."""
+
+    MIRROR = "shaken the other way, the block does not answer the other way"
+    PEAK = "on one of the paper's histories another outcome, or a peak off by more than 0.3"
+    SLEEP = "a block that stood still for two seconds sleeps on while it is shaken"
+    RECORD = "under an accelerogram the rotation is off by more than 0.6 of its peak"
+
+
+class Citation(NamedTuple):
+    """Where documentation says what a preset sets: a page, a file or a header, and the version."""
+
+    setting: str
+    value: str
+    where: str
+
+
+BEST, DEFAULT = "fixed", "naive"
+"""The presets from which one factor at a time is varied."""
+
+AS_BEST, BY_DEFAULT = "as in the best", "default"
+"""Names of the values that these two take from each other."""
+
+LEFT_OUT = "left out"
+"""Name of the factor of what a preset is helped by: without one of them at a time."""
+
+OWN_STEPS, OWN_STEP = "step", "the library's own"
+"""Factor and level of the defaults at their own step, which elsewhere is the same for all."""
+
+BOTH = (BEST, DEFAULT)
+
+Settings = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Level:
+    """A value of a factor.
+
+    Attributes
+    ----------
+    name : str
+    settings : mapping
+        Settings of the engine.
+    presets : tuple of str
+        From which it is tried.
+    trap : str
+        Why it goes wrong without a word, where it does.
+    scene : mapping
+        Options of the scene.
+    """
+
+    name: str
+    settings: Settings
+    presets: tuple[str, ...] = (BEST,)
+    trap: str = ""
+    scene: Settings = field(default_factory=dict)
+
+
+def level(name: str, presets: tuple[str, ...] = (BEST,), trap: str = "", **settings: Any) -> Level:
+    """Return a value of a factor that is a matter of the engine's settings alone.
+
+    Parameters
+    ----------
+    name, presets, trap
+        As of `Level`.
+    **settings
+        Settings of the engine by name.
+    """
+    return Level(name=name, settings=settings, presets=presets, trap=trap)
+
+
+@dataclass(frozen=True, slots=True)
+class Factor:
+    """Settings that belong together, and what they could be.
+
+    Each of the two presets is tried with the other's values of them, where these differ, and with
+    the levels.
+
+    Attributes
+    ----------
+    name : str
+    settings : tuple of str
+        Their names.
+    levels : tuple of Level
+    by_default : bool
+        Whether to try the best setting with the library's default of them.
+    traps : mapping
+        Preset -> why it goes wrong with the other's values, where it does.
+    """
+
+    name: str
+    settings: tuple[str, ...]
+    levels: tuple[Level, ...] = ()
+    by_default: bool = field(default=True, kw_only=True)
+    traps: Mapping[str, str] = field(default_factory=dict, kw_only=True)
+
+
+def factor(setting: str, *levels: Level, name: str = "", **options: Any) -> Factor:
+    """Return a factor that is a matter of one setting.
+
+    Parameters
+    ----------
+    setting : str, its name
+    *levels : Level
+    name : str, optional, of the factor; by default the setting's
+    **options
+        by_default and traps of `Factor`.
+    """
+    return Factor(name or setting.replace("_", " "), (setting,), levels, **options)
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What a user of a library should do, and the variant of a preset that shows what it is worth.
+
+    Attributes
+    ----------
+    words : str
+        In the library's own words, as an order.
+    preset, factor, level : str
+        The variant, as a study of contacts calls it.
+    kept : bool
+        Whether it is the variant that keeps the rule, and the preset that does not.
+    """
+
+    words: str
+    preset: str
+    factor: str
+    level: str
+    kept: bool = False
+
+
+UNMOVED = "a base without a velocity: friction does not feel it"
+
+BY_POSITION = "by position alone"
+MOVING_BASE = "moving base"
+"""Name of the factor of how a base that moves is moved, and of the way that no friction feels."""
+
+
+def moving_base(*floors: str) -> Factor:
+    """Return the factor of a base that moves in the world, in ways of the setting `floor`.
+
+    The first one is that of the tuned presets; "position" is the base moved by position alone.
+    """
+    levels = [
+        Level(
+            name=BY_POSITION if floor == "position" else f"by {floor}",
+            settings={"floor": floor},
+            trap=UNMOVED if floor == "position" else "",
+            scene={"frame": "world"},
+        )
+        for floor in floors
+    ]
+    return Factor(MOVING_BASE, ("floor",), tuple(levels), by_default=False)
+
+
+ASLEEP = Factor(
+    "sleeping",
+    ("sleeping",),
+    (
+        Level(
+            name="on",
+            settings={"sleeping": True},
+            trap="a block asleep: gravity that turns wakes nothing",
+        ),
+    ),
+    by_default=False,
+)
+"""A block that was put to sleep, which tuned presets forbid (setting `sleeping`)."""
+
+SLEEP = (BEST, ASLEEP.name, ASLEEP.levels[0].name)
+"""What a rule about it is shown by."""
+
+UNMOVED_BASE = (BEST, MOVING_BASE, BY_POSITION)
+"""What a rule about such a base is shown by."""
+
 
 Builder = Callable[[Any, Any, float], Any]
 """``(scene, settings, dt_s)`` -> the built scene, in the ordinary steps dt_s [s]."""
@@ -287,7 +473,9 @@ class Engine:
     @property
     def most_friction(self) -> float:
         """The largest coefficient of friction that it takes."""
-        return largest(self.best.settings, "friction")
+        items = fields(self.best.settings)
+        bounds = next(item.metadata for item in items if item.name == "friction")
+        return float(bounds["allowed"].most) if "allowed" in bounds else math.inf
 
     def resolution(self, block: System) -> Resolution:
         """Return what its numbers tell apart about a block."""

@@ -5,12 +5,16 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from typing import Any
 
-from engines.declaration import Engine
-from engines.undeclared import undeclared
+from engines.declaration import Engine, Help, Preset, Stepping
+from engines.scene import Scene
+from engines.settings import check, setting
+from engines.world import World
 
 FURTHER = "ROCKING_ENGINES"
 """Environment variable: engines that no package announces, as "name=module:ENGINE" with blanks
@@ -203,3 +207,53 @@ def find(name: str | Engine) -> Engine:
     if name not in ENGINES:
         raise ValueError(f"engine is {name!r}; it must be one of {', '.join(ENGINES)}")
     return ENGINES[name]
+
+
+FIXED_STEP = 1e-3
+"""p dt of equal steps."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlainSettings:
+    """The one setting that every engine must take: friction between block and base."""
+
+    friction: float = setting(1.0, above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+def undeclared(name: str, build: Callable[[Scene, Any, float], World], library: str) -> Engine:
+    """Return an engine that is used as it is built, with equal steps and with ones that land.
+
+    Parameters
+    ----------
+    name : str, by which a user asks for it
+    build : callable, ``(scene, settings, dt_s) -> World``, settings being `PlainSettings` and dt_s
+        the ordinary step [s]
+    library : str, the module to import, and what pip is told to install
+
+    Returns
+    -------
+    Engine
+        It holds one body, in the frame "base" alone.
+    """
+    return Engine(
+        name=name,
+        title=name,
+        library=library,
+        packages=(),
+        install=library,
+        build=build,
+        presets=(
+            Preset(name="fixed", title="equal steps", settings=PlainSettings(), step=FIXED_STEP),
+            Preset(
+                name="landing",
+                title="steps that land on impacts",
+                settings=PlainSettings(),
+                stepping=Stepping.LANDING,
+                helped_by={Help.STEPS: None},
+            ),
+        ),
+        frames=("base",),
+    )

@@ -4,7 +4,10 @@ import enum
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol
 
-from analytic.motion import FloatArray
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
 
 
 class Moment(enum.Enum):
@@ -156,7 +159,7 @@ class SteppedWorld(World, Protocol):
 
 Driver = Callable[[Any, Any, int], int]
 """``(runs, lists, most) -> taken``: takes up to so many steps of a run, in a compiled loop that
-chooses each and looks on by the functions of `engines.run.monitor`, as long as the run goes on."""
+chooses each and looks on by the functions of `engines.run.look`, as long as the run goes on."""
 
 
 class DrivenWorld(SteppedWorld, Protocol):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from analytic.motion import FloatArray, Motion
     from analytic.response import Response
-    from engines.layouts import System
+    from engines.scene import System
 
 __all__ = ["plot", "respond", "side_by_side", "table"]
 

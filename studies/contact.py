@@ -16,8 +16,7 @@ from analytic import conditioning
 from analytic.frame import RockingFrame
 from analytic.response import Outcome
 from engines import ENGINES, core_engines
-from engines.declaration import Stepping
-from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
+from engines.declaration import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS, Stepping
 from engines.scene import Scene
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.paper import Case, free_rocking_window

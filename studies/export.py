@@ -14,8 +14,8 @@ from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset, Stepping
 from engines.parts.script import Script
 from engines.run import ground
-from engines.scene import perhaps
-from engines.watching.sliding import LEAST_SLIP, SLIP_RATE
+from engines.run.slide import LEAST_SLIP, SLIP_RATE
+from engines.settings import perhaps
 from studies.cases.paper import free_rocking_window
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import Place, Step, TimeLimit, refuse_both, refuse_given

@@ -21,7 +21,7 @@ from cyclopts import Parameter
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES, installed_engines
-from engines.run.drive import build
+from engines.run.run import build
 from engines.world import ContactPhase, Pose, Step, SteppedWorld
 from studies.cases.refusal import BadInputError
 from studies.cases.ways import WAYS, WITHOUT

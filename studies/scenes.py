@@ -18,9 +18,9 @@ from analytic.motion import Motion
 from analytic.response import Outcome, Reason, Response
 from analytic.simulate import simulate
 from engines import Scene
-from engines.parts.factors import DEFAULT
-from engines.run.drive import LAG, Stepper, build
-from engines.run.monitor import Monitor
+from engines.declaration import DEFAULT
+from engines.run.look import Monitor
+from engines.run.run import LAG, Stepper, build
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import listed, part
 from studies.kit.study import Study, Tables

@@ -11,9 +11,8 @@ from engines.box2d.settings import (
     Box2DSettings,
 )
 from engines.box2d.stacks import Box2DStacks
-from engines.declaration import Engine, Precision, Preset, Stepping
-from engines.disclosure import Deviation, Help
-from engines.layouts import Ability
+from engines.declaration import Deviation, Engine, Help, Precision, Preset, Stepping
+from engines.scene import Ability
 
 NAIVE = Preset(
     name="naive",

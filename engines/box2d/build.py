@@ -13,14 +13,11 @@ import numpy as np
 
 from engines.box2d.settings import Box2DSettings
 from engines.declaration import Precision
-from engines.layouts import BASE
-from engines.parts.compiled import FloatArray
-from engines.parts.quiet import imported
-from engines.parts.readback import disagreement
+from engines.parts import FLOOR_HEIGHTS, imported
 from engines.parts.script import Script, filled, moved, settings_of
-from engines.parts.shapes import FLOOR_HEIGHTS
-from engines.scene import Scene
-from engines.world import ContactPhase, Moment, Pose, Step
+from engines.scene import BASE, Scene
+from engines.settings import disagreement
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
 
 MOST_REFLECTION = 2.0
 """A step that is much longer than the one before gives back no more than this part."""

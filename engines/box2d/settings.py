@@ -2,24 +2,23 @@
 
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Citation
-from engines.parts.factors import (
+from engines.declaration import (
     AS_BEST,
     ASLEEP,
     BEST,
     BY_DEFAULT,
     DEFAULT,
     SLEEP,
+    Citation,
     Factor,
     Rule,
     factor,
     level,
     moving_base,
 )
-from engines.parts.settings import check, setting
-from engines.parts.shapes import NO_JAM, fall, iterations_for
-from engines.parts.units import Counted
+from engines.parts import NO_JAM, Counted, fall, iterations_for
 from engines.scene import Scene
+from engines.settings import check, setting
 
 MANUAL_ITERATIONS = 6
 """For velocities: of the library's own hello world."""

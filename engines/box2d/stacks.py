@@ -8,7 +8,7 @@ part, whose friction and load would hold, too.
 
 from engines.box2d.build import Box2DWorld
 from engines.box2d.settings import Box2DSettings
-from engines.parts.quiet import imported
+from engines.parts import imported
 from engines.scene import Scene
 from engines.world import ContactPhase, Step
 

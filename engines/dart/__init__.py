@@ -11,9 +11,8 @@ from engines.dart.settings import (
     DartSettings,
 )
 from engines.dart.stacks import DartStacks
-from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Deviation, Help
-from engines.layouts import Ability
+from engines.declaration import Deviation, Engine, Help, Preset, Stepping
+from engines.scene import Ability
 
 NAIVE = Preset(
     name="naive",

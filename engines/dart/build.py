@@ -11,22 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from engines.dart.settings import (
-    DETECTORS,
-    IN_PLANE,
-    IN_SPACE,
-    SOLVERS,
-    DartSettings,
-)
-from engines.parts.compiled import FloatArray
-from engines.parts.quiet import imported
-from engines.parts.readback import disagreement
+from engines.dart.settings import DETECTORS, IN_PLANE, IN_SPACE, SOLVERS, DartSettings
+from engines.parts import counted, fall, floor_half_size, half_size, imported, touching_spheres
 from engines.parts.reflection import returned
 from engines.parts.script import Script, defined, filled, moved, settings_of
-from engines.parts.shapes import fall, floor_half_size, half_size, touching_spheres
-from engines.parts.units import counted
 from engines.scene import Scene
-from engines.world import ContactPhase, Moment, Pose, Step
+from engines.settings import disagreement
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
 
 
 def numbers(scene: Scene, s: DartSettings) -> SimpleNamespace:

@@ -2,19 +2,19 @@
 
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Citation
-from engines.parts.factors import (
+from engines.declaration import (
     BEST,
     BOTH,
     DEFAULT,
     UNMOVED_BASE,
+    Citation,
     Factor,
     Rule,
     factor,
     level,
     moving_base,
 )
-from engines.parts.settings import check, setting
+from engines.settings import check, setting
 
 DETECTORS = {
     "DART": "DARTCollisionDetector",

@@ -9,7 +9,7 @@ import math
 
 from engines.dart.build import DartWorld, numbers, touching
 from engines.dart.settings import DartSettings
-from engines.parts.quiet import imported
+from engines.parts import imported
 from engines.scene import Scene
 from engines.world import ContactPhase, Step
 

@@ -1,7 +1,6 @@
 """Drake: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Deviation
+from engines.declaration import Deviation, Engine, Preset, Stepping
 from engines.drake.build import DrakeWorld
 from engines.drake.script import script
 from engines.drake.settings import (
@@ -13,7 +12,7 @@ from engines.drake.settings import (
     TUNED,
     DrakeSettings,
 )
-from engines.layouts import Ability
+from engines.scene import Ability
 
 NAIVE = Preset(
     name="naive",

@@ -15,22 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from engines.drake.settings import (
-    CENIC,
-    GAINS,
-    LONGEST,
-    PLANE,
-    SPEED_GAINS,
-    DrakeSettings,
-)
-from engines.parts.compiled import FloatArray
-from engines.parts.quiet import imported
-from engines.parts.readback import disagreement
-from engines.parts.settings import given
-from engines.parts.shapes import floor_half_size, half_size, touching_spheres
+from engines.drake.settings import CENIC, GAINS, LONGEST, PLANE, SPEED_GAINS, DrakeSettings
+from engines.parts import floor_half_size, half_size, imported, touching_spheres
 from engines.run.ground import mean_velocity_of
 from engines.scene import Scene
-from engines.world import Moment, Pose, Step
+from engines.settings import disagreement, given
+from engines.world import FloatArray, Moment, Pose, Step
 
 MODULES = (
     "geometry",

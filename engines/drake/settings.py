@@ -2,21 +2,21 @@
 
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Citation
-from engines.parts.factors import (
+from engines.declaration import (
     BEST,
     BOTH,
     BY_DEFAULT,
     DEFAULT,
     UNMOVED_BASE,
+    Citation,
     Factor,
     Rule,
     factor,
     level,
     moving_base,
 )
-from engines.parts.settings import check, setting
-from engines.parts.shapes import NO_JAM
+from engines.parts import NO_JAM
+from engines.settings import check, setting
 
 CENIC = "cenic"
 """The integrator of a continuous plant; the other solvers are those of a discrete one."""

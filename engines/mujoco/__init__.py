@@ -1,8 +1,6 @@
 """MuJoCo: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Deviation, Help
-from engines.layouts import Ability
+from engines.declaration import Deviation, Engine, Help, Preset, Stepping
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
 from engines.mujoco.script import script
 from engines.mujoco.settings import (
@@ -18,7 +16,7 @@ from engines.mujoco.settings import (
     spring,
 )
 from engines.mujoco.stacks import stacks_of
-from engines.scene import GEOMETRIES
+from engines.scene import GEOMETRIES, Ability
 
 NAIVE = Preset(
     name="naive",

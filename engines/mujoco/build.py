@@ -7,14 +7,11 @@ from typing import Any
 from engines.mujoco.contact import notice, prepare, read
 from engines.mujoco.contact_state import ContactState, Forces, arrays_of, begin_contact
 from engines.mujoco.model import OPTIONS, coordinates, impedance_of, model_xml
-from engines.mujoco.settings import (
-    MujocoSettings,
-    kept,
-)
-from engines.parts.compiled import FloatArray, interpreted, switched_off
-from engines.parts.readback import disagreement
+from engines.mujoco.settings import MujocoSettings, kept
+from engines.parts.compiled import interpreted, switched_off
 from engines.scene import Scene
-from engines.world import Driver, Moment, Step
+from engines.settings import disagreement
+from engines.world import Driver, FloatArray, Moment, Step
 
 LIBRARY_STEP_S = 0.002
 """The library's own time step [s]."""

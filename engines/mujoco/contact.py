@@ -8,7 +8,6 @@ a row of arrays.pairs.
 
 import math
 
-from engines.layouts import LOWER
 from engines.mujoco.contact_state import (
     BODY,
     DIRECT,
@@ -25,9 +24,10 @@ from engines.mujoco.contact_state import (
     Forces,
 )
 from engines.mujoco.model import direct_reference
-from engines.parts.compiled import FloatArray, shared
+from engines.parts.compiled import shared
 from engines.parts.reflection import part_of, take_in
-from engines.world import ContactPhase, Pose, Step
+from engines.scene import LOWER
+from engines.world import ContactPhase, FloatArray, Pose, Step
 
 FEEBLE = 1e-15
 """k dt^2 where positions are to be left alone; the library takes a zero for something else."""

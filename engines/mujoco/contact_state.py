@@ -4,13 +4,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engines.layouts import Ability
 from engines.mujoco.model import welded
 from engines.mujoco.settings import MujocoSettings
-from engines.parts.compiled import FloatArray, State, fill
+from engines.parts.compiled import State, fill
 from engines.parts.reflection import Reflection, begin_reflection
-from engines.scene import Scene
-from engines.world import Pose
+from engines.scene import Ability, Scene
+from engines.world import FloatArray, Pose
 
 UNSET, SCALED, DIRECT = range(3)
 """Forms of the contact's reference: the library's own, its time constant in steps, b and k."""

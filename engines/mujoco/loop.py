@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 
 from engines.mujoco.contact import notice, prepare, read
 from engines.mujoco.contact_state import Arrays, ContactState, Forces
-from engines.parts.compiled import FloatArray, kernel, shared
-from engines.run.monitor import Lists, Run, onward, undecided
+from engines.parts.compiled import kernel, shared
+from engines.run.look import Lists, Run, onward, undecided
+from engines.world import FloatArray
 
 mj_step: Any = types.ExternalFunction("mj_step", types.void(types.intp, types.intp))
 
@@ -73,7 +74,7 @@ def drive(
     arrays : Arrays, written
     memory : Memory, of the same model and data
     runs, lists
-        As for `engines.run.monitor.onward`, updated.
+        As for `engines.run.look.onward`, updated.
     most : int, how many; with 0 the state is read, and nothing is taken
     """
     held = holds[0]

@@ -4,11 +4,10 @@ import math
 from collections.abc import Iterator
 from xml.etree import ElementTree
 
-from engines.layouts import BASE
 from engines.mujoco.settings import MujocoSettings
+from engines.parts import corner_spheres, floor_half_size, half_size, hull_points
 from engines.parts.compiled import shared
-from engines.parts.shapes import corner_spheres, floor_half_size, half_size, hull_points
-from engines.scene import Scene
+from engines.scene import BASE, Scene
 
 OPTIONS = (
     "cone",

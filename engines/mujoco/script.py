@@ -2,12 +2,11 @@
 
 from collections.abc import Iterator
 
-from engines.layouts import Ability
 from engines.mujoco.model import coordinates, stepped_xml, welded
 from engines.mujoco.settings import MujocoSettings, kept
 from engines.mujoco.stacks import softened
 from engines.parts.script import Script
-from engines.scene import Scene
+from engines.scene import Ability, Scene
 from engines.world import Moment
 
 MODEL = "block.xml"

@@ -3,19 +3,19 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.disclosure import Citation
-from engines.parts.factors import (
+from engines.declaration import (
     BOTH,
     DEFAULT,
     UNMOVED_BASE,
+    Citation,
     Factor,
     Rule,
     factor,
     level,
     moving_base,
 )
-from engines.parts.settings import check, setting
 from engines.scene import GEOMETRIES, Scene
+from engines.settings import check, setting
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
 """Integrators of the library."""

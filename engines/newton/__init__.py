@@ -1,10 +1,10 @@
 """Newton: what it can do, how it is used, what its users should know first."""
 
 from engines.declaration import Engine, Precision, Preset
-from engines.layouts import Ability
 from engines.newton.build import NewtonWorld, script
 from engines.newton.settings import DOCUMENTED, FACTORS, RECOMMENDED, RULES, TUNED, NewtonSettings
 from engines.newton.stacks import NewtonStacks
+from engines.scene import Ability
 
 NAIVE = Preset(
     name="naive",

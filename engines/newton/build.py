@@ -9,10 +9,10 @@ import math
 from engines.declaration import Precision
 from engines.newton.models import build, given_back, numbers, taken, values
 from engines.newton.settings import NewtonSettings
-from engines.parts.quiet import imported, silence
-from engines.parts.readback import disagreement
+from engines.parts import imported, silence
 from engines.parts.script import Script, filled, settings_of
 from engines.scene import Scene
+from engines.settings import disagreement
 from engines.world import Moment, Pose, Step
 
 

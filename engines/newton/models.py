@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 from engines.newton.settings import NewtonSettings
-from engines.parts.shapes import corner_spheres, half_size
+from engines.parts import corner_spheres, half_size
 from engines.scene import Scene
 
 MOST_CONTACTS = 4

@@ -3,22 +3,22 @@
 from dataclasses import dataclass
 from typing import Any
 
-from engines.disclosure import Citation
-from engines.parts.factors import (
+from engines.declaration import (
     AS_BEST,
     BEST,
     BOTH,
     BY_DEFAULT,
     DEFAULT,
     UNMOVED_BASE,
+    Citation,
     Factor,
     Rule,
     factor,
     level,
     moving_base,
 )
-from engines.parts.settings import check, given, setting
-from engines.parts.shapes import NO_JAM
+from engines.parts import NO_JAM
+from engines.settings import check, given, setting
 
 XPBD = "xpbd"
 """The solver by positions; the other ones are Kamino's, by impulses."""

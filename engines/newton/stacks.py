@@ -6,14 +6,11 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import Precision
-from engines.layouts import Body
 from engines.newton.settings import NewtonSettings
-from engines.parts.compiled import FloatArray
-from engines.parts.quiet import imported, silence
-from engines.parts.readback import disagreement
-from engines.parts.shapes import half_size, touching_spheres
-from engines.scene import Scene
-from engines.world import Moment, Pose, Step
+from engines.parts import half_size, imported, silence, touching_spheres
+from engines.scene import Body, Scene
+from engines.settings import disagreement
+from engines.world import FloatArray, Moment, Pose, Step
 
 MOST_CONTACTS = 16
 """Room for so many contacts where two faces meet; by its own estimate the library takes more."""

@@ -16,7 +16,8 @@ from dataclasses import dataclass, field
 from textwrap import dedent
 from typing import Any, NamedTuple
 
-from engines.scene import Scene, one_of
+from engines.scene import Scene
+from engines.settings import one_of
 from engines.world import Moment
 
 SETTINGS = "s"

@@ -1,8 +1,6 @@
 """PhysX: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Precision, Preset, Stepping
-from engines.disclosure import Deviation, Help
-from engines.layouts import Ability
+from engines.declaration import Deviation, Engine, Help, Precision, Preset, Stepping
 from engines.physx.build import PhysxWorld, script
 from engines.physx.settings import (
     DOCUMENTED,
@@ -13,6 +11,7 @@ from engines.physx.settings import (
     TUNED,
     PhysxSettings,
 )
+from engines.scene import Ability
 
 NAIVE = Preset(
     name="naive",

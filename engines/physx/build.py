@@ -13,17 +13,13 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import Precision
-from engines.parts.compiled import FloatArray
-from engines.parts.quiet import imported
-from engines.parts.readback import disagreement
+from engines.parts import counted, floor_half_size, half_size, imported, touching_spheres
 from engines.parts.reflection import returned
 from engines.parts.script import Script, filled, moved, settings_of
-from engines.parts.settings import given
-from engines.parts.shapes import floor_half_size, half_size, touching_spheres
-from engines.parts.units import counted
 from engines.physx.settings import PhysxSettings
 from engines.scene import Scene
-from engines.world import Moment, Pose, Step
+from engines.settings import disagreement, given
+from engines.world import FloatArray, Moment, Pose, Step
 
 CORNER, BASE_DEPTH = 1e-3, 1e-2
 """Radius of corner balls and half the depth of the base over the height of the block: contacts are

@@ -2,8 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Citation
-from engines.parts.factors import (
+from engines.declaration import (
     BEST,
     BOTH,
     BY_DEFAULT,
@@ -11,15 +10,15 @@ from engines.parts.factors import (
     OWN_STEP,
     OWN_STEPS,
     UNMOVED_BASE,
+    Citation,
     Factor,
     Rule,
     factor,
     level,
     moving_base,
 )
-from engines.parts.settings import check, setting
-from engines.parts.shapes import NO_JAM
-from engines.parts.units import Counted
+from engines.parts import NO_JAM, Counted
+from engines.settings import check, setting
 
 MOST = 255
 """Iterations at most: the library counts them in eight bits."""

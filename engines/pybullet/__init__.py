@@ -1,8 +1,6 @@
 """PyBullet: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Help
-from engines.layouts import Ability
+from engines.declaration import Engine, Help, Preset, Stepping
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.script import script
 from engines.pybullet.settings import (
@@ -17,7 +15,7 @@ from engines.pybullet.settings import (
     BulletSettings,
     spring,
 )
-from engines.scene import GEOMETRIES
+from engines.scene import GEOMETRIES, Ability
 
 NAIVE = Preset(
     name="naive",

@@ -8,9 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from engines.parts.compiled import FloatArray
-from engines.parts.quiet import imported, silence
-from engines.parts.readback import disagreement
+from engines.parts import imported, silence
 from engines.pybullet.calls import (
     UPRIGHT,
     Call,
@@ -28,13 +26,10 @@ from engines.pybullet.calls import (
     hold_call,
     most_force,
 )
-from engines.pybullet.settings import (
-    LIBRARY_BREAKING_THRESHOLD,
-    LIBRARY_STEP_S,
-    BulletSettings,
-)
+from engines.pybullet.settings import LIBRARY_BREAKING_THRESHOLD, LIBRARY_STEP_S, BulletSettings
 from engines.scene import Scene
-from engines.world import ContactPhase, Moment, Pose, Step
+from engines.settings import disagreement
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
 
 RENDERER = "tinyRendererPlugin"
 """The library's name of what draws, or would."""

@@ -5,17 +5,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from engines.layouts import Body
-from engines.parts.settings import given
-from engines.parts.shapes import (
-    Point,
-    floor_half_size,
-    half_size,
-    hull_points,
-    touching_spheres,
-)
+from engines.parts import Point, floor_half_size, half_size, hull_points, touching_spheres
 from engines.pybullet.settings import SOLVERS, BulletSettings
-from engines.scene import Scene
+from engines.scene import Body, Scene
+from engines.settings import given
 
 KEPT_GAP = 4.0
 """Gap up to which landing keeps a contact, in units of (p dt sin(alpha))^2 half diagonals. A pivot

@@ -3,22 +3,22 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engines.disclosure import Citation
-from engines.parts.factors import (
+from engines.declaration import (
     AS_BEST,
     BEST,
     BOTH,
     BY_DEFAULT,
     DEFAULT,
+    Citation,
     Factor,
     Rule,
     factor,
     level,
     moving_base,
 )
-from engines.parts.settings import check, setting
-from engines.parts.shapes import iterations_for
+from engines.parts import iterations_for
 from engines.scene import GEOMETRIES, Scene
+from engines.settings import check, setting
 
 LIBRARY_STEP_S = 1.0 / 240.0
 """The library's own time step [s]."""

@@ -1,8 +1,6 @@
 """pymunk: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Deviation, Help
-from engines.layouts import Ability
+from engines.declaration import Deviation, Engine, Help, Preset, Stepping
 from engines.pymunk.build import LIBRARY_STEP_S, PymunkWorld, script
 from engines.pymunk.settings import (
     DOCUMENTED,
@@ -13,6 +11,7 @@ from engines.pymunk.settings import (
     TUNED,
     PymunkSettings,
 )
+from engines.scene import Ability
 
 NAIVE = Preset(
     name="naive",

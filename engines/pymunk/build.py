@@ -12,15 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from engines.layouts import BASE, Ability, Body
-from engines.parts.compiled import FloatArray
-from engines.parts.quiet import imported
-from engines.parts.readback import disagreement
+from engines.parts import FLOOR_HEIGHTS, imported
 from engines.parts.script import Script, defined, filled, moved, settings_of
-from engines.parts.shapes import FLOOR_HEIGHTS
 from engines.pymunk.settings import LEVEL, PymunkSettings
-from engines.scene import Scene
-from engines.world import ContactPhase, Moment, Pose, Step
+from engines.scene import BASE, Ability, Body, Scene
+from engines.settings import disagreement
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
 
 UNIT_S = 1e-3
 """Step [s] that the library is told where the positions are not its own to move."""

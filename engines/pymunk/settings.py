@@ -2,21 +2,21 @@
 
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Citation
-from engines.parts.factors import (
+from engines.declaration import (
     DEFAULT,
     LEFT_OUT,
     OWN_STEP,
     OWN_STEPS,
+    Citation,
     Factor,
     Rule,
     factor,
     level,
     moving_base,
 )
-from engines.parts.settings import check, setting
-from engines.parts.shapes import NO_JAM, fall, iterations_for
+from engines.parts import NO_JAM, fall, iterations_for
 from engines.scene import Scene
+from engines.settings import check, setting
 
 LEVEL = 1e-9
 """A block that leans by less [rad] stands on both corners: held to the margin while it falls, the

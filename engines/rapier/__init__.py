@@ -1,8 +1,6 @@
 """Rapier: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Engine, Precision, Preset, Stepping
-from engines.disclosure import Deviation, Help
-from engines.layouts import Ability
+from engines.declaration import Deviation, Engine, Help, Precision, Preset, Stepping
 from engines.rapier.build import RapierWorld, script
 from engines.rapier.settings import (
     DOCUMENTED,
@@ -13,6 +11,7 @@ from engines.rapier.settings import (
     TUNED,
     RapierSettings,
 )
+from engines.scene import Ability
 
 NAIVE = Preset(
     name="naive",

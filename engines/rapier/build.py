@@ -13,16 +13,13 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import Precision
-from engines.parts.compiled import FloatArray
-from engines.parts.quiet import imported
-from engines.parts.readback import disagreement
+from engines.parts import counted, half_size, imported, touching_spheres
 from engines.parts.reflection import returned
 from engines.parts.script import Script, filled, moved, settings_of
-from engines.parts.shapes import half_size, touching_spheres
-from engines.parts.units import counted
 from engines.rapier.settings import RapierSettings
 from engines.scene import Scene
-from engines.world import Moment, Pose, Step
+from engines.settings import disagreement
+from engines.world import FloatArray, Moment, Pose, Step
 
 ALOFT = 1e-2
 """A block that sleeps while it leans by more than this part of alpha is on one corner.

@@ -3,24 +3,23 @@
 import math
 from dataclasses import dataclass, replace
 
-from engines.disclosure import Citation
-from engines.parts.factors import (
+from engines.declaration import (
     ASLEEP,
     BEST,
     BOTH,
     BY_DEFAULT,
     DEFAULT,
     SLEEP,
+    Citation,
     Factor,
     Rule,
     factor,
     level,
     moving_base,
 )
-from engines.parts.settings import check, setting
-from engines.parts.shapes import NO_JAM, Point, floor_half_size, iterations_for
-from engines.parts.units import Counted
+from engines.parts import NO_JAM, Counted, Point, floor_half_size, iterations_for
 from engines.scene import Scene
+from engines.settings import check, setting
 
 OVERDAMPED = 1e5
 """Damping ratio of a contact that corrects positions and is firm all the same, in single precision.

@@ -3,13 +3,22 @@
 from typing import Any
 
 from engines.declaration import Stepping
-from engines.parts.compiled import FloatArray, State, fill, shared
+from engines.parts.compiled import State, fill, shared
 from engines.run import ground as plain
 from engines.run.ground import Ground, mean_velocity_over
 from engines.run.landing import Landing, begin_landing, choose
 from engines.run.timetable import Times, begin_times, even, pass_to
 from engines.scene import Scene
-from engines.world import UNLIMITED, Choice, ContactPhase, Moment, Pose, Resolution, Step
+from engines.world import (
+    UNLIMITED,
+    Choice,
+    ContactPhase,
+    FloatArray,
+    Moment,
+    Pose,
+    Resolution,
+    Step,
+)
 
 for function in (
     plain.one_minus_sinc,

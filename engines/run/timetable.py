@@ -6,8 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.motion import Motion
-from engines.parts.compiled import FloatArray, State, fill, shared
+from engines.parts.compiled import State, fill, shared
 from engines.scene import Scene
+from engines.world import FloatArray
 
 SAME_TIME = 1e-9
 """Times closer than this part of the ordinary step are the same."""

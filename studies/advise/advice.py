@@ -18,7 +18,7 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES
 from engines.declaration import Preset, Stepping
-from engines.parts.settings import given
+from engines.settings import given
 from studies.advise import symptoms as seen
 from studies.kit.arguments import (
     Engines,

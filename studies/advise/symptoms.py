@@ -15,7 +15,7 @@ import pandas as pd
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES, Scene
-from engines.parts.factors import BEST, DEFAULT, MOVING_BASE, OWN_STEPS
+from engines.declaration import BEST, DEFAULT, MOVING_BASE, OWN_STEPS
 from engines.parts.script import Script
 from studies.cases.refusal import BadInputError
 from studies.cases.variants import variants

@@ -15,7 +15,7 @@ from analytic import RockingFrame, frame_demands, simulate
 from analytic.block import RigidBlock, Rocker
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Response
-from engines.layouts import BEAM_DEPTH, SPACING
+from engines.scene import BEAM_DEPTH, SPACING
 
 LEAST_NORMAL = 0.2
 """Part of the weight above which the reference's normal force stays in cases that are kept; of a

@@ -7,7 +7,7 @@ from itertools import product
 
 from analytic.block import RigidBlock
 from analytic.motion import Motion, SinePulse
-from engines.layouts import System
+from engines.scene import System
 
 PULSES = {"half-sine": 1, "full-sine": 2}
 """Half cycles of each pulse."""

@@ -11,7 +11,7 @@ from analytic import RigidBlock
 from analytic.motion import Motion
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
-from engines.layouts import System
+from engines.scene import System
 from studies.cases.paper import free_rocking_window
 from studies.cases.refusal import BadInputError
 from studies.kit.jobs import Job, Question, Row, ask, summary

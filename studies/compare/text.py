@@ -10,7 +10,7 @@ from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.simulate import strongest
 from analytic.slide import SlidingBlock
-from engines.layouts import System
+from engines.scene import System
 from studies.cases.paper import PULSES
 from studies.kit.jobs import Question, Row
 from studies.kit.say import duration, in_columns, number

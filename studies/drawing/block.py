@@ -13,7 +13,7 @@ from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
 
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray
-from engines.layouts import System, layout_of
+from engines.scene import System, layout_of
 from studies.drawing.styles import full_name, style_of, title_of
 from studies.kit.say import power
 

@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engines.parts.factors import AS_BEST, BY_DEFAULT, LEFT_OUT, OWN_STEP
+from engines.declaration import AS_BEST, BY_DEFAULT, LEFT_OUT, OWN_STEP
 from studies.drawing.facets import dot, error_scale, key, panels, preset_dots, rows, strip_beyond
 from studies.drawing.styles import title_of
 from studies.kit.say import capital, part

@@ -19,7 +19,7 @@ from tqdm import tqdm
 
 from analytic.motion import FloatArray, Motion
 from analytic.response import Outcome
-from engines.layouts import System, layout_of
+from engines.scene import System, layout_of
 from studies.drawing.block import outlines
 from studies.drawing.styles import line_of, style_of
 from studies.kit.jobs import Row

@@ -154,7 +154,7 @@ def _answer(commands: Mapping[str, str], arguments: Sequence[str]) -> int:
 
 def _unknown_option(error: UnknownOptionError) -> str:
     """Return the refusal of an option that a command does not have, with the one it is like."""
-    from engines.scene import perhaps
+    from engines.settings import perhaps
 
     given = (error.token.keyword or error.token.value).partition("=")[0]
     names = [name for each in error.argument_collection for name in each.names]

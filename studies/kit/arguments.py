@@ -12,7 +12,8 @@ from cyclopts import Parameter, Token
 
 from analytic.text import finite_number, underflows
 from engines import ENGINES
-from engines.scene import MOST_HALF_CYCLES, perhaps
+from engines.scene import MOST_HALF_CYCLES
+from engines.settings import perhaps
 from studies.cases.refusal import BadInputError
 from studies.sources import registry
 

@@ -108,7 +108,7 @@ def maker_of(source: Source, measure: Callable[..., Any]) -> Maker:
     known = (ROOT / "analytic" / f"{name}.py" for name in describing)
     # what a study measures may take the exact solution beside the engine's answer
     made["analytic"] = code_in(*known) if measured == {ANSWER} else _reference()
-    shared = (ENGINES_AT / name for name in ("parts", "run", "watching"))
+    shared = (ENGINES_AT / name for name in ("parts", "run"))
     made["engines"] = code_in(*ENGINES_AT.glob("*.py"), *shared)
     made["studies"] = code_in(*measured, SOURCES / "registry.py")
     return {**made, f"code of {source.engine}": code_in(_code_of(source.declared.build.__module__))}

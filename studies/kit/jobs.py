@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.motion import FloatArray, Motion
 from analytic.response import Response
-from engines.layouts import System
+from engines.scene import System
 from studies.cases.refusal import BadInputError
 from studies.kit.say import brief, one_line
 from studies.sources.registry import Source, resolve

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 
 from analytic.slide import SlidingBlock
 from engines.declaration import Stepping
-from engines.layouts import System
+from engines.scene import System
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import (
     Count,

@@ -18,7 +18,7 @@ from analytic.kernels.kept import are_compiled
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason, Response
 from engines.parts.compiled import PACKAGE
-from engines.run.monitor import compile_monitor
+from engines.run.look import compile_monitor
 from studies.cases.refusal import BadInputError
 from studies.kit.app import ENDING
 from studies.kit.identity import Maker, maker_of

@@ -16,7 +16,7 @@ from analytic.record import Record
 from analytic.simulate import strongest
 from analytic.slide import SlidingBlock
 from analytic.start import LEAST_TILT
-from engines.layouts import System
+from engines.scene import System
 from studies.cases.accelerograms import Baseline, read_record
 from studies.cases.paper import PULSES
 from studies.cases.refusal import BadInputError

@@ -9,7 +9,7 @@ import pandas as pd
 
 from analytic.motion import Motion
 from analytic.response import Response
-from engines.layouts import System
+from engines.scene import System
 
 
 def samples(

@@ -11,9 +11,16 @@ from typing import Any, TypeAlias
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import AT_REST, RECOMMENDED, Stepping
-from engines.disclosure import Help
-from engines.parts.factors import AS_BEST, BEST, DEFAULT, LEFT_OUT
+from engines.declaration import (
+    AS_BEST,
+    AT_REST,
+    BEST,
+    DEFAULT,
+    LEFT_OUT,
+    RECOMMENDED,
+    Help,
+    Stepping,
+)
 from engines.registry import OWN
 from studies.kit.identity import NOT_INSTALLED
 from studies.kit.say import capital, duration, listed, part

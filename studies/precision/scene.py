@@ -24,7 +24,7 @@ from analytic import peak_ratios, simulate
 from analytic.response import Outcome, Response
 from engines import ENGINES
 from engines.declaration import Engine
-from engines.run.drive import build
+from engines.run.run import build
 from studies.cases.paper import HISTORIES, SWEEPS, free_rocking_window, sweep_cases
 from studies.kit.jobs import Job, Row, ask, summary
 from studies.measures.costs import best_of, best_of_each

@@ -23,7 +23,7 @@ from analytic.text import finite_number
 from engines import ENGINES
 from engines.declaration import AT_REST, Engine
 from engines.registry import OWN, UnloadableError, named
-from engines.scene import perhaps
+from engines.settings import perhaps
 from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments

@@ -19,7 +19,7 @@ import pandas as pd
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.motion import FloatArray, Still
 from engines.declaration import UNTUNED, Stepping
-from engines.run.drive import NotAvailableError, build
+from engines.run.run import NotAvailableError, build
 from engines.world import ContactPhase, Moment, Step, SteppedWorld
 from studies.kit.jobs import Job, Row
 from studies.kit.say import brief, listed, one_line

@@ -15,11 +15,11 @@ from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
-from engines.layouts import System
 from engines.parts.compiled import interpreted_first
 from engines.registry import announce as announce_engine
 from engines.registry import named
-from engines.scene import Scene, one_of, perhaps
+from engines.scene import Scene, System
+from engines.settings import one_of, perhaps
 from studies.sources.scipy_peers import solve_ivp_response
 
 Kind = Literal["model", "solver", "peer", "engine"]
@@ -113,7 +113,7 @@ def run_engine(
     The response is failed, with its reason, where the engine is not installed or cannot do what is
     asked; ValueError if it has no such preset or setting.
     """
-    from engines.run.drive import run
+    from engines.run.run import run
 
     scene = scene_of(block, motion, preset, **options)
     return interpreted_first(partial(run, engine, scene))

@@ -12,8 +12,7 @@ from independent import history_under_samples
 
 from analytic import MODELS, Outcome, Record, RigidBlock, SinePulse, integrate, simulate
 from engines import ENGINES, installed_engines
-from engines.declaration import UNTUNED
-from engines.disclosure import Deviation
+from engines.declaration import UNTUNED, Deviation
 from studies import respond
 from studies.kit.jobs import Job, Question
 from studies.sources.registry import SOURCES

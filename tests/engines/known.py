@@ -6,7 +6,7 @@ from dataclasses import replace
 from analytic import simulate
 from engines import ENGINES
 from engines.declaration import Stepping
-from engines.run.drive import simulate_world
+from engines.run.run import simulate_world
 from engines.scene import ACCURACIES
 from engines.world import Moment, Pose
 

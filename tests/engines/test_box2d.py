@@ -4,7 +4,7 @@ import pytest
 from uses import BLOCK, HERE, error, pulse, rocked
 
 from analytic import RigidBlock, SinePulse, simulate
-from engines.parts.quiet import imported
+from engines.parts import imported
 
 pytestmark = pytest.mark.skipif("box2d" not in HERE, reason="Box2D is not installed")
 

@@ -14,7 +14,7 @@ from analytic.block import RigidBlock
 from engines import ENGINES
 from engines.pybullet import build as bullet
 from engines.pybullet.settings import FACTORS
-from engines.run.drive import build, run, simulate_world
+from engines.run.run import build, run, simulate_world
 from engines.world import ContactPhase
 
 p = pytest.importorskip("pybullet")

@@ -13,9 +13,9 @@ from analytic import RockingFrame, SlidingBlock
 from analytic.response import Outcome, Reason
 from engines import ENGINES
 from engines.declaration import UNTUNED
-from engines.layouts import Ability, SideBySide
 from engines.registry import OWN
-from engines.run.drive import build, run, simulate_world
+from engines.run.run import build, run, simulate_world
+from engines.scene import Ability, SideBySide
 from engines.world import Pose
 from studies.cases.variants import variants
 
@@ -170,7 +170,7 @@ def test_an_engine_is_imported_when_named_and_says_nothing(engine):
         "import sys\n"
         "from analytic import RigidBlock, SinePulse\n"
         "from engines import ENGINES, Scene\n"
-        "from engines.run.drive import run\n"
+        "from engines.run.run import run\n"
         "assert all(engine.presets for engine in ENGINES.values())\n"
         f"assert not {libraries!r} & set(sys.modules)\n"
         f"block, pulse = {BLOCK!r}, {SHAKEN!r}\n"

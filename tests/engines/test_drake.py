@@ -10,8 +10,8 @@ from analytic import simulate
 from analytic.response import Outcome, Reason
 from engines.declaration import AT_REST
 from engines.drake import build as drake
-from engines.parts.shapes import NO_JAM
-from engines.run.drive import LAG, build
+from engines.parts import NO_JAM
+from engines.run.run import LAG, build
 from studies.cases.paper import sweep_cases
 
 pytestmark = pytest.mark.skipif("drake" not in HERE, reason="pydrake is not installed")

@@ -36,7 +36,7 @@ from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Outcome, Reason
 from engines import FRAMES
 from engines.declaration import UNTUNED, Stepping
-from engines.run.drive import LAG, build, simulate_world
+from engines.run.run import LAG, build, simulate_world
 
 
 @pytest.mark.parametrize(("engine", "preset", "frame"), TUNED_IN_FRAMES)

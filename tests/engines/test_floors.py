@@ -9,7 +9,7 @@ from uses import BLOCK, HERE, SHAKEN, agreed, pulse, rocked, scene
 from analytic.response import Outcome
 from engines.mujoco import model
 from engines.pybullet import NAIVE, calls
-from engines.run.drive import LAG, build
+from engines.run.run import LAG, build
 
 FASTEST = 2.0 * SHAKEN.amplitude / SHAKEN.omega
 ERROR_REDUCTION = 0.2

@@ -13,12 +13,11 @@ from analytic import RockingFrame, SinePulse, SlidingBlock, Still
 from analytic.response import Outcome, Reason
 from engines import ENGINES
 from engines.declaration import UNTUNED, Stepping
-from engines.layouts import BASE, LOWER, UPPER, Ability, SideBySide, layout_of
 from engines.mujoco.settings import STACKED, TUNED
 from engines.mujoco.stacks import softened
 from engines.registry import OWN
-from engines.run.drive import simulate_world
-from engines.scene import Scene
+from engines.run.run import simulate_world
+from engines.scene import BASE, LOWER, UPPER, Ability, Scene, SideBySide, layout_of
 from engines.world import Moment, Pose
 from studies.cases.drawn import RandomFrame
 

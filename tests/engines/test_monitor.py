@@ -18,8 +18,8 @@ from engines.mujoco import loop as mujoco_loop
 from engines.parts import compiled as parts
 from engines.parts.compiled import PACKAGE
 from engines.pybullet import build as bullet
-from engines.run.drive import LOOK_AROUND, build
-from engines.run.monitor import roomy
+from engines.run.look import roomy
+from engines.run.run import LOOK_AROUND, build
 
 TIMES = [0.02 * i for i in range(80)]
 LOOSE = {"accuracy": "loose"}

@@ -12,8 +12,7 @@ from uses import BLOCK, HERE, USES, pulse, rocked
 from analytic import RigidBlock, simulate
 from analytic.record import Record
 from analytic.response import Outcome
-from engines.declaration import UNTUNED, Stepping
-from engines.disclosure import Deviation
+from engines.declaration import UNTUNED, Deviation, Stepping
 
 MISSED = {
     "naive": (0.5, 0.5),  # some lean, or hop, in their contact before the onset

@@ -11,7 +11,7 @@ from analytic.response import Outcome
 from engines import ENGINES
 from engines.declaration import AT_REST
 from engines.newton import models as newton_models
-from engines.run.drive import build, run
+from engines.run.run import build, run
 
 pytestmark = pytest.mark.skipif("newton" not in HERE, reason="newton is not installed")
 

@@ -8,7 +8,7 @@ from uses import HERE, rocked
 
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Reason
-from engines.parts.quiet import imported
+from engines.parts import imported
 
 OWN = "friction of a box of which nothing is said"
 

@@ -4,8 +4,8 @@ import pytest
 from uses import BLOCK, HERE, error, rocked, scene
 
 from engines import ENGINES
-from engines.parts.quiet import imported
-from engines.run.drive import build
+from engines.parts import imported
+from engines.run.run import build
 
 pytestmark = pytest.mark.skipif("physx" not in HERE, reason="sapien is not installed")
 

@@ -7,8 +7,7 @@ import pytest
 from uses import HERE, agreed, pulse, rocked
 
 from analytic import RigidBlock
-from engines.parts.quiet import imported
-from engines.parts.shapes import NO_JAM
+from engines.parts import NO_JAM, imported
 
 pytestmark = pytest.mark.skipif("pymunk" not in HERE, reason="pymunk is not installed")
 

@@ -30,7 +30,7 @@ from analytic import RigidBlock, simulate
 from analytic.criteria import free_amplitude, frictionless_fall, quarter_period
 from analytic.motion import SinePulse, Still
 from analytic.response import Outcome
-from engines.run.drive import build
+from engines.run.run import build
 from engines.scene import ACCURACIES
 
 STILL = Still()

@@ -8,13 +8,12 @@ import pytest
 
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, installed_engines
-from engines.declaration import Stepping
+from engines.declaration import BEST, LEFT_OUT, OWN_STEPS, Stepping
 from engines.mujoco.settings import TUNED, MujocoSettings
-from engines.parts.factors import BEST, LEFT_OUT, OWN_STEPS
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.settings import BulletSettings
-from engines.run.drive import build, run
-from engines.run.monitor import Monitor
+from engines.run.look import Monitor
+from engines.run.run import build, run
 from studies.cases.selection import chosen_cases
 from studies.cases.variants import variants
 

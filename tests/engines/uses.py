@@ -6,10 +6,9 @@ from given import BLOCK, pulse
 
 from analytic import Outcome, simulate
 from engines import ENGINES, FRAMES, Scene, core_engines
-from engines.declaration import UNTUNED, Stepping
-from engines.disclosure import Deviation
-from engines.run.drive import run
-from engines.run.monitor import Monitor
+from engines.declaration import UNTUNED, Deviation, Stepping
+from engines.run.look import Monitor
+from engines.run.run import run
 from engines.world import ROUNDINGS
 from studies.cases.paper import sweep_cases
 

@@ -10,11 +10,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from engines.declaration import Engine, Preset, Stepping
-from engines.disclosure import Citation, Help
-from engines.parts.factors import factor, level
-from engines.parts.settings import check, setting
+from engines.declaration import Citation, Engine, Help, Preset, Stepping, factor, level
 from engines.scene import Scene
+from engines.settings import check, setting
 from engines.world import Moment, Pose, Step
 
 SLACK = 1e-12

@@ -3,8 +3,8 @@
 import pymunk
 
 from engines.declaration import Engine, Preset
-from engines.layouts import Ability
-from engines.undeclared import PlainSettings
+from engines.registry import PlainSettings
+from engines.scene import Ability
 from engines.world import Moment
 
 

@@ -3,7 +3,7 @@
 import my_engine
 import rocking_moreau
 
-from engines.undeclared import PlainSettings
+from engines.registry import PlainSettings
 from engines.world import Moment
 
 

@@ -7,8 +7,8 @@ import pytest
 from commanding import refused
 
 from engines import ENGINES, installed_engines
-from engines.layouts import Ability
-from engines.parts.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
+from engines.declaration import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
+from engines.scene import Ability
 from studies import contact
 from studies.cases.selection import chosen_cases
 from studies.cases.variants import STILL, variants

@@ -17,7 +17,7 @@ from analytic.record import Record
 from analytic.response import Reason
 from engines import ENGINES, Scene, installed_engines
 from engines.declaration import UNTUNED, Stepping
-from engines.run.drive import run
+from engines.run.run import run
 from studies.__main__ import run as rocking
 from studies.export import files, script_of, unwritten
 from studies.kit.identity import version_of

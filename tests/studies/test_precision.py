@@ -12,7 +12,7 @@ from declared import equal_to
 from analytic.response import Response
 from engines import ENGINES, Scene, core_engines, installed_engines
 from engines.declaration import Stepping
-from engines.run.drive import run as drive
+from engines.run.run import run as drive
 from studies import precision
 from studies.kit.run import run
 from studies.measures.costs import LEAST_RUNS, LEAST_S, best_of, cost_text, enough

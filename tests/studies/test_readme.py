@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from commanding import PAGES, PROSE, PUBLISHED_PAGES, ROOT, refused
 
-from engines.parts.factors import BEST, DEFAULT, LEFT_OUT
+from engines.declaration import BEST, DEFAULT, LEFT_OUT
 from studies.page import facts, readme
 from studies.page.readme import table
 

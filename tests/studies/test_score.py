@@ -12,7 +12,7 @@ from commanding import ROOT, refused
 from analytic import simulate
 from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Stepping
-from engines.undeclared import undeclared
+from engines.registry import undeclared
 from studies import respond, score
 from studies.__main__ import COMMANDS, run
 from studies.kit.app import make_app

@@ -13,8 +13,7 @@ from given import BLOCK, FULL_SINE
 
 from analytic.response import Impact, Outcome, Response
 from engines import ENGINES, installed_engines
-from engines.declaration import UNTUNED
-from engines.disclosure import Deviation
+from engines.declaration import UNTUNED, Deviation
 from studies import respond
 from studies.__main__ import COMMANDS, run
 from studies.measures.published import PUBLISHED

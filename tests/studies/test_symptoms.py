@@ -11,8 +11,8 @@ from given import BLOCK
 
 from analytic import simulate
 from engines import ENGINES, Scene
-from engines.parts.factors import DEFAULT, OWN_STEPS
-from engines.run.drive import run
+from engines.declaration import DEFAULT, OWN_STEPS
+from engines.run.run import run
 from studies.__main__ import run as run_command
 from studies.advise.symptoms import HULL, MEASURED, OWN, SYMPTOMS, UNMOVED, VARIANTS, find, patch
 from studies.cases.paper import free_rocking_window, sweep_cases

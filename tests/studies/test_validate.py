@@ -10,7 +10,7 @@ from commanding import refused
 from given import BLOCK, PULSE
 
 from analytic import frame_faults, simulate
-from engines.layouts import BEAM_DEPTH, SPACING
+from engines.scene import BEAM_DEPTH, SPACING
 from studies import respond
 from studies.__main__ import run as run_command
 from studies.cases.drawn import FRICTION, KEPT, LEAST_NORMAL, census, draw, everything, fate_of

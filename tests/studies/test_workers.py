@@ -13,7 +13,7 @@ from given import BLOCK, FULL_SINE
 from analytic import SinePulse
 from engines import registry
 from engines.declaration import Stepping
-from engines.run.drive import simulate_world
+from engines.run.run import simulate_world
 from engines.scene import Scene
 from studies.kit.jobs import Job, Question, answer
 from studies.kit.run import local

@@ -15,24 +15,22 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import History, Problem, Response
 from engines.declaration import Stepping
-from engines.parts.compiled import FloatArray, State, interpreted, kernel, shared, spend
+from engines.parts.compiled import State, interpreted, kernel, shared, spend
+from engines.run.answer import problem_of, response_of, slide_response, together
+from engines.run.frame import Spread, begin_spread, observables_of, see_spread
 from engines.run.ground import rows_of
+from engines.run.history import sample
+from engines.run.slide import Slide, begin_slide, see_slide
 from engines.run.steps import Pace, begin_pace, next_step
 from engines.run.timetable import timetable
+from engines.run.watch import EVENTS_A_LOOK, Row, Watch, begin_watch, see
 from engines.scene import Scene
-from engines.watching.answer import problem_of, response_of, slide_response, together
-from engines.watching.frame import Spread, begin_spread, observables_of, see_spread
-from engines.watching.history import sample
-from engines.watching.observe import see
-from engines.watching.sliding import Slide, begin_slide, see_slide
-from engines.watching.swing import Row
-from engines.watching.watch import EVENTS_A_LOOK, Watch, begin_watch
-from engines.world import UNLIMITED, ContactPhase, Moment, Pose, Resolution, Step
+from engines.world import UNLIMITED, ContactPhase, FloatArray, Moment, Pose, Resolution, Step
 
 Lists = tuple[Any, FloatArray, FloatArray, FloatArray, FloatArray]
 """The ground, the stops and the loads, as for `engines.run.steps.next_step`; and of each body that
 rocks the rows of a history (bodies, k, 4), a `Row` each, and the events (bodies, k, 4), their
-columns as in `engines.watching.watch`."""
+columns as in `engines.run.watch`."""
 
 PHASE, PHASES = Step._fields.index("phase"), tuple(ContactPhase)
 

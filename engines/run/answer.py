@@ -6,12 +6,10 @@ from dataclasses import replace
 from typing import cast
 
 from analytic.response import History, Impact, Outcome, Problem, Reason, Response
-from engines.parts.compiled import FloatArray
-from engines.watching.observe import complete
-from engines.watching.sliding import DISTANCE, SINCE, Slide, end_slip
-from engines.watching.sliding import WHEN as STOP
-from engines.watching.sliding import observables_of as observables_of_slide
-from engines.watching.watch import (
+from engines.run.slide import DISTANCE, SINCE, Slide, end_slip
+from engines.run.slide import WHEN as STOP
+from engines.run.slide import observables_of as observables_of_slide
+from engines.run.watch import (
     BEAM_SLIPPED,
     DIVERGED,
     HOLD_WIDTHS,
@@ -25,7 +23,9 @@ from engines.watching.watch import (
     UPLIFT,
     WHEN,
     Watch,
+    complete,
 )
+from engines.world import FloatArray
 
 SINK_WIDTHS = 0.05
 """Of a corner deeper in the base than this part of the width a reader should know."""

@@ -1,16 +1,31 @@
-"""Settings of an engine: a frozen dataclass whose fields say what they allow.
+"""Settings of an engine: a frozen dataclass whose fields say what they allow, and reading back.
 
-Its defaults are the library's own, so that ``Settings()`` changes nothing; None leaves
-a setting to the library.
+Its defaults are the library's own, so that ``Settings()`` changes nothing; None leaves a setting to
+the library.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from difflib import get_close_matches
 from numbers import Real
 from typing import Any
 
-from engines.scene import one_of
+from engines.world import ROUNDINGS
+
+
+def one_of(name: str, value: str, allowed: Iterable[str]) -> None:
+    """Raise ValueError unless `value` is one of those allowed; the message names them."""
+    allowed = tuple(allowed)
+    if value not in allowed:
+        near = perhaps(value, allowed)
+        raise ValueError(f"{name} is {value!r}{near}; it must be one of {', '.join(allowed)}")
+
+
+def perhaps(value: str, allowed: Sequence[str]) -> str:
+    """Return the words that name the one of those allowed which a value is like, if one is."""
+    near = get_close_matches(str(value).lower(), allowed, 1, 0.7)
+    return f", perhaps {near[0]!r}" if near else ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,23 +99,25 @@ def check(settings: Any) -> None:
             allowed.check(item.name, value)
 
 
-def largest(settings: Any, name: str) -> float:
-    """Return the largest value that a setting may have.
-
-    Parameters
-    ----------
-    settings : dataclass instance, of an engine
-    name : str, one of its fields
-
-    Returns
-    -------
-    float
-        inf where nothing bounds it.
-    """
-    metadata = next(item.metadata for item in fields(settings) if item.name == name)
-    return float(metadata["allowed"].most) if "allowed" in metadata else math.inf
-
-
 def given(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings that are not left to the library."""
     return {name: value for name, value in settings.items() if value is not None}
+
+
+def disagreement(pairs: Mapping[str, tuple[Any, Any]], rounding: float = 2.0**-53) -> str:
+    """Name the first setting that reads back as something else, or return an empty string.
+
+    Parameters
+    ----------
+    pairs : mapping
+        Name -> what was set, and what was read. What was left to the library, None, is not held.
+    rounding : float, optional
+        Relative rounding of the engine's numbers.
+    """
+    near = max(1e-9, ROUNDINGS * rounding)
+    for name, (wanted, found) in pairs.items():
+        if wanted is None or wanted == found:
+            continue
+        if isinstance(wanted, str) or not math.isclose(wanted, found, rel_tol=near):
+            return f"{name} was set to {wanted!r} but reads {found!r}"
+    return ""

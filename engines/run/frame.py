@@ -5,8 +5,9 @@ See EQUATIONS.md, "The rocking frame".
 
 from collections.abc import Mapping
 
-from engines.layouts import Layout
-from engines.parts.compiled import FloatArray, State, fill, shared
+from engines.parts.compiled import State, fill, shared
+from engines.scene import Layout
+from engines.world import FloatArray
 
 
 class Spread(State):

@@ -9,7 +9,7 @@ from typing import cast
 from analytic.response import Problem, Reason, Response
 from engines.declaration import Engine, Stepping
 from engines.registry import find
-from engines.run.monitor import Monitor
+from engines.run.look import Monitor
 from engines.scene import Scene
 from engines.world import (
     UNLIMITED,

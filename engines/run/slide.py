@@ -6,11 +6,10 @@ See EQUATIONS.md, "The sliding block".
 import math
 from collections.abc import Mapping
 
-from engines.parts.compiled import FloatArray, State, fill, shared
+from engines.parts.compiled import State, fill, shared
+from engines.run.watch import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS, Row, put
 from engines.scene import Scene
-from engines.watching.swing import Row, put
-from engines.watching.watch import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS
-from engines.world import Pose
+from engines.world import FloatArray, Pose
 
 SLIP_RATE = 3e-4
 """A box slides when it is faster than this part of sqrt(g B): what it still goes when it is slower,

@@ -1,1 +1,0 @@
-"""From poses to rotation, impacts, outcome and history: the same eyes for every engine."""
