@@ -25,9 +25,8 @@ It holds
 - ``build(scene, settings, dt_s)``, the only place that may import the library, so that
   declarations are read without it: a library that is missing is a row "not available";
 - where it can be, ``script``: the scene in the library's own words, by which `rocking export`
-  writes it out and `rocking advise` says what to set. What builds the scene is then best a plain
-  function of the library and of numbers, whose source the script has with the numbers filled in
-  (`engines.parts.script.filled`), so that both are one;
+  writes it out and `rocking advise` says what to set. The world is built once more with a library
+  whose calls are noted (`engines.run.export`), so that a script says what a run does;
 - where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
   the bit what ``step`` and ``state`` give (`Scene.compiled`);
 - where it can hold what ``build`` does not, as bodies that rest on others, what builds that, a line

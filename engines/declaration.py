@@ -8,10 +8,9 @@ from dataclasses import dataclass, field, fields, replace
 from importlib.metadata import Distribution
 from typing import Any, NamedTuple
 
-from engines.parts.script import Script
 from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Ability, Scene, System
 from engines.settings import one_of
-from engines.world import REST_FACTOR, ROUNDINGS, Resolution, World
+from engines.world import REST_FACTOR, ROUNDINGS, Resolution, Script, World
 
 
 class Help(enum.Enum):

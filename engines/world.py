@@ -1,7 +1,8 @@
 """What a built scene is told and must answer: steps, states, and the moment of a velocity."""
 
 import enum
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -175,3 +176,41 @@ class SelfSteppingWorld(World, Protocol):
 
     def advance(self, end_s: float) -> int:
         """Advance to a time [s], the base moving as the scene says; return the steps taken."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Script:
+    """What an engine's declaration writes of a scene: Python for the library, without this project.
+
+    The lines are put into a script that shakes the base, watches for the largest rotation and ends
+    the run, the same for all engines.
+
+    Attributes
+    ----------
+    imports : tuple of str
+        Lines that import the library.
+    settings : tuple of str
+        What the preset sets, in the library's words, a line each: what a reader would copy.
+    build : tuple of str
+        Lines that build the scene, and a list of its `bodies`; `HERE` is the folder of the script.
+    step : tuple of str
+        Lines that take a step of `DT` [s] under the gravity `pull_x` and `pull_z` [m/s2]; a base
+        that moves comes to `base_x` [m] by a mean `base_velocity` [m/s].
+    pose : tuple of str
+        Lines that read `theta` [rad] and `rate` [rad/s] of the body with a `number`.
+    place : str
+        How far the first body's centre is along the base [m], which should be at `base_x` [m].
+    moment : Moment
+        At which moment of a step the velocity holds.
+    files : mapping
+        Name -> text of what lies beside the script.
+    """
+
+    imports: tuple[str, ...]
+    settings: tuple[str, ...]
+    build: tuple[str, ...]
+    step: tuple[str, ...]
+    pose: tuple[str, ...]
+    place: str
+    moment: Moment = Moment.MIDDLE
+    files: Mapping[str, str] = field(default_factory=dict)

@@ -12,10 +12,10 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from analytic import RigidBlock, RockingFrame, SlidingBlock
 from engines import ENGINES, Scene
 from engines.declaration import Engine, Preset, Stepping
-from engines.parts.script import Script
 from engines.run import ground
 from engines.run.slide import LEAST_SLIP, SLIP_RATE
 from engines.settings import perhaps
+from engines.world import Script
 from studies.cases.paper import free_rocking_window
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import Place, Step, TimeLimit, refuse_both, refuse_given

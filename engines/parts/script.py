@@ -12,13 +12,12 @@ import ast
 import inspect
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from textwrap import dedent
 from typing import Any, NamedTuple
 
 from engines.scene import Scene
 from engines.settings import one_of
-from engines.world import Moment
+from engines.world import Script
 
 SETTINGS = "s"
 """The parameter of such a function that holds settings."""
@@ -26,44 +25,7 @@ SETTINGS = "s"
 GETATTR = re.compile(r"getattr\(([\w.]+), '(\w+)'\)")
 """A part of the library whose name was filled in."""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Script:
-    """What an engine's declaration writes of a scene: Python for the library, without this project.
-
-    The lines are put into a script that shakes the base, watches for the largest rotation and ends
-    the run, the same for all engines.
-
-    Attributes
-    ----------
-    imports : tuple of str
-        Lines that import the library.
-    settings : tuple of str
-        What the preset sets, in the library's words, a line each: calls with their numbers, or
-        parts of a model. They are what a reader would copy.
-    build : tuple of str
-        Lines that build the scene, the settings among them where they are calls; `HERE` is the
-        folder of the script, a Path.
-    step : tuple of str
-        Lines that take a step of `DT` [s] under the gravity `pull_x` and `pull_z` [m/s2].
-    pose : tuple of str
-        Lines that read `theta` [rad] and `rate` [rad/s] of the body with a `number`.
-    place : str
-        How far the first body's centre is along the base [m], which should be at `base_x` [m].
-    moment : Moment
-        At which moment of a step the velocity holds.
-    files : mapping
-        Name -> text of what lies beside the script.
-    """
-
-    imports: tuple[str, ...]
-    settings: tuple[str, ...]
-    build: tuple[str, ...]
-    step: tuple[str, ...]
-    pose: tuple[str, ...]
-    place: str
-    moment: Moment = Moment.MIDDLE
-    files: Mapping[str, str] = field(default_factory=dict)
+__all__ = ["Line", "Script", "defined", "filled", "moved", "settings_of"]
 
 
 class Line(NamedTuple):

@@ -361,7 +361,7 @@ def in_library_words(line: pd.Series[Any], block: RigidBlock, friction: float, v
     motion, options = SinePulse(amplitude=1.0, omega=1.0), options_at(preset, value)
     scene = scene_of(block, motion, preset.name, friction=friction, **options)
     dt_s, chosen = preset.ordinary_step_s(scene), scene.choose(preset.settings)
-    if engine.script is not None:
+    if engine.script is not None and engine.installed:
         lines = list(engine.script(scene, chosen, dt_s).settings)
     else:
         named = ", ".join(f"{name}={each!r}" for name, each in given(asdict(chosen)).items())

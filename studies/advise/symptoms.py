@@ -16,7 +16,7 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES, Scene
 from engines.declaration import BEST, DEFAULT, MOVING_BASE, OWN_STEPS
-from engines.parts.script import Script
+from engines.world import Script
 from studies.cases.refusal import BadInputError
 from studies.cases.variants import variants
 from studies.kit.jobs import Row
@@ -236,7 +236,7 @@ def patch(
     for an engine that writes no scripts.
     """
     script, usual = ENGINES[engine].script, ENGINES[engine].preset(DEFAULT)
-    if script is None:
+    if script is None or not ENGINES[engine].installed:
         return ""
     known = {(each.preset, each.factor, each.level): each.settings for each in variants(engine)}
     changed = known[DEFAULT, factor, level]

@@ -1,0 +1,427 @@
+"""pymunk (Chipmunk2D): settings, presets, and how a scene is built, set, read back and stepped.
+
+The library moves positions before it changes velocities, and scales cached impulses by the ratio
+of two steps: a short step before a long one would throw the block. Where steps differ, a preset
+therefore keeps the library's step as it is, gives each step its own gravity, and moves the
+positions itself, by the library's own function, from the library's own velocities.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from engines.declaration import (
+    DEFAULT,
+    LEFT_OUT,
+    OWN_STEP,
+    OWN_STEPS,
+    Citation,
+    Deviation,
+    Engine,
+    Factor,
+    Help,
+    Preset,
+    Rule,
+    Stepping,
+    factor,
+    level,
+    moving_base,
+)
+from engines.parts import FLOOR_HEIGHTS, NO_JAM, fall, imported, iterations_for
+from engines.run.export import Notes, Script, constant, scaled
+from engines.scene import BASE, Ability, Body, Scene
+from engines.settings import check, disagreement, setting
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
+
+UNIT_S = 1e-3
+"""Step [s] that the library is told where the positions are not its own to move."""
+
+MOST_REFLECTION = 2.0
+"""A step that is much longer than the one before gives back no more than this part."""
+
+LEVEL = 1e-9
+"""A block that leans by less [rad] stands on both corners: held to the margin while it falls, the
+free corner would come to rest above the base."""
+
+LIBRARY_STEP_S = 0.02
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PymunkSettings:
+    """Settings of pymunk; None leaves the library's default.
+
+    Attributes
+    ----------
+    geometry : str
+        "box": one polygon on one segment, or "corners": points at the corners, each on a polygon of
+        its own.
+    friction : float
+        Coefficient between block and base.
+    iterations, slop, bias : optional
+        `Space.iterations`, `collision_slop` [units of length] and `collision_bias`.
+    sweeps : float or None
+        Iterations over 1/sin^2(alpha), where `iterations` are None.
+    positions : bool
+        Move the positions after the velocities, by the adapter.
+    margin : float or None
+        Gap over (alpha p dt)^2 H up to which the corner about which the block turns is kept in
+        contact; slop is then beyond it.
+    reflection : bool
+        Give the pivot's velocity back while the block turns about it, by elasticity and surface
+        velocity.
+    floor : str
+        How a base that moves is moved: by its "velocity", by "both" its place and its velocity, or
+        by "position" alone.
+    unit : float
+        Units of length in a metre.
+    restitution, base_restitution : float
+        Elasticity of the corners (a box has none), and of the base, with which the library
+        multiplies it.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    friction: float = setting(1.0, least=0.0)
+    iterations: int | None = setting(None, least=1)
+    slop: float | None = setting(None, least=0.0)
+    bias: float | None = setting(None, least=0.0, most=1.0)
+    sweeps: float | None = setting(None, above=0.0)
+    positions: bool = False
+    margin: float | None = setting(None, above=0.0)
+    reflection: bool = False
+    floor: str = setting("velocity", names=("velocity", "both", "position"))
+    unit: float = setting(1.0, above=0.0)
+    restitution: float = setting(0.0, least=0.0, most=1.0)
+    base_restitution: float = setting(1.0, least=0.0, most=1.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+class PymunkWorld:
+    """Bodies on one that does not move by itself, in a `pymunk.Space`."""
+
+    def __init__(
+        self, scene: Scene, settings: PymunkSettings, dt_s: float, library: Any = None
+    ) -> None:
+        self._pymunk: Any = imported("pymunk") if library is None else library
+        self.settings, self._unit = settings, settings.unit
+        self.moment = Moment.MIDDLE if settings.positions else Moment.NEXT
+        self._floor = settings.floor if scene.frame == "world" else ""
+        self._dt = self._under = self.lag_m = 0.0
+        self.margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
+        # free corners of bodies that rest on others must meet them together
+        self._together = settings.positions and Ability.STACKED in scene.layout.asks
+        self._iterations = iterations_for(scene, settings.iterations, settings.sweeps)
+        self.space = self._new_space()
+        self.base = self._pymunk.Body(body_type=self._pymunk.Body.KINEMATIC)
+        self.bodies = [self._new_body(body) for body in scene.bodies]
+        self.pivots: list[float] = []
+        self._at: list[tuple[float, float]] = []
+        box = settings.geometry == "box"
+        self.corners, self.floors = self._boxes(scene) if box else self._corners(scene)
+        root = math.sqrt(settings.friction)  # the product counts
+        for shape in (*self.corners, *self.floors):
+            shape.friction = constant(root, f"math.sqrt({float(settings.friction)!r})")
+        self.space.add(self.base, *self.bodies, *self.corners, *self.floors)
+        if self._floor != "velocity":
+            self.base.position_func = stay
+        for body in self.bodies if settings.positions else ():
+            body.position_func = stay
+        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
+        self._fault = self._read_back(scene)
+
+    def _new_space(self) -> Any:
+        s, space = self.settings, self._pymunk.Space()
+        if self._iterations is not None:
+            space.iterations = self._iterations
+        if s.slop is not None or s.margin is not None:
+            space.collision_slop = s.slop if s.margin is None else 10.0 * self.margin
+        if s.bias is not None:
+            space.collision_bias = s.bias
+        return space
+
+    def _new_body(self, body: Body) -> Any:
+        unit, at = self._unit, body.at
+        made = self._pymunk.Body(body.mass, body.inertia[1] * unit**2)
+        made.position, made.angle = (at.x * unit, at.z * unit), -at.theta
+        if not at.at_rest:
+            made.velocity = (at.velocity_x * unit, at.velocity_z * unit)
+            made.angular_velocity = -at.rate
+        return made
+
+    def _boxes(self, scene: Scene) -> tuple[list[Any], list[Any]]:
+        far = FLOOR_HEIGHTS * scene.bodies[0].height * self._unit
+        pairs = zip(self.bodies, scene.bodies, strict=True)
+        boxes = [self._pymunk.Poly(made, boxed(body, self._unit)) for made, body in pairs]
+        return boxes, [self._pymunk.Segment(self.base, (-far, 0.0), (far, 0.0), 0.0)]
+
+    def _corners(self, scene: Scene) -> tuple[list[Any], list[Any]]:
+        """Make the corners, and a floor for each, which meets that corner alone."""
+        far = FLOOR_HEIGHTS * scene.bodies[0].height * self._unit
+        deeper = self.margin if self._together else 0.0
+        corners: list[Any] = []
+        floors: list[Any] = []
+        for number, face, on in scene.layout.contacts:
+            body = scene.bodies[number]
+            x, z = 0.5 * body.width * self._unit, 0.5 * face * body.height * self._unit
+            ground = [(-far, -far), (far, -far), (far, -deeper), (-far, -deeper)]
+            ground = ground if on == BASE else boxed(scene.bodies[on], self._unit, deeper)
+            # the radius that a floor is made with bounds the ones that it is given later
+            widest = 2.0 * self.margin if self._together else self.margin
+            for side in (1.0, -1.0):
+                under, one = self.base if on == BASE else self.bodies[on], 1 << len(corners)
+                corners.append(self._pymunk.Circle(self.bodies[number], 0.0, (-side * x, z)))
+                floors.append(self._pymunk.Poly(under, ground, radius=widest))
+                for shape in (corners[-1], floors[-1]):
+                    shape.filter = self._pymunk.ShapeFilter(categories=one, mask=one)
+                self.pivots.append(face * side)
+                self._at.append((-side * x, z))
+        return corners, floors
+
+    def step(self, step: Step) -> None:
+        """Advance by a step."""
+        own, unit = self.settings.positions, self._unit
+        dt = UNIT_S if own else step.dt_s
+        pull = unit * step.dt_s / dt
+        self.space.gravity = (step.pull_x * pull, step.pull_z * pull)
+        if self.pivots:
+            self._hold(step)
+        if self._floor == "velocity":
+            self._under = self.base.position.x
+            self.base.velocity = ((step.base_x * unit - self._under) / step.dt_s, 0.0)
+        elif self._floor == "both":
+            self.base.velocity = (step.base_velocity * unit, 0.0)
+        self.space.step(dt)
+        if self._floor == "velocity":
+            self.lag_m = max(self.lag_m, abs(self.base.position.x / unit - step.base_x))
+        elif self._floor:
+            self._under = step.base_x * unit
+            self.base.position = (self._under, 0.0)
+        for body in self.bodies if own else ():
+            self._pymunk.Body.update_position(body, step.dt_s)
+
+    def _hold(self, step: Step) -> None:
+        """Keep the pivot in contact, and give its velocity back while the block turns about it."""
+        s, before, self._dt, back = self.settings, self._dt, step.dt_s, 0.0
+        if s.reflection and before and step.phase in (ContactPhase.SWING, ContactPhase.APPROACH):
+            back = min(step.dt_s / before, MOST_REFLECTION)
+        bounce = s.restitution * s.base_restitution
+        # equal steps do not say about which corner
+        about = 0.0 if step.phase is ContactPhase.REST else step.side or -self.bodies[0].angle
+        free, held = 0.0, 1.0
+        if self._together:  # floors lie a margin deeper, and reach out further for an impact
+            free = {ContactPhase.APPROACH: 0.0, ContactPhase.STRIKE: 2.0}.get(step.phase, 1.0)
+            held = 2.0
+        pairs = zip(self.pivots, self._at, self.corners, self.floors, strict=True)
+        for side, at, corner, floor in pairs:
+            pivot = side * about >= -LEVEL
+            floor.unsafe_set_radius(self.margin * (held if pivot else free))
+            returned = back if pivot and step.side else 0.0
+            corner.elasticity, floor.elasticity, slip = 1.0, max(returned, bounce), 0.0
+            if returned:
+                slip = corner.body.velocity_at_local_point(at)[0] - floor.body.velocity[0]
+            corner.surface_velocity = (returned * slip, 0.0)
+
+    def state(self) -> FloatArray:
+        """Read the poses back; a base that the library moves is a step ahead, and carries then."""
+        unit, under = self._unit, self._under
+        for number, body in enumerate(self.bodies):
+            x, z = body.position
+            self._state[number] = (x - under) / unit, z / unit, -body.angle, -body.angular_velocity
+        return self._state
+
+    def fault(self) -> str:
+        """Say which setting was not taken."""
+        return self._fault
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+        self.space.remove(*self.space.shapes, *self.space.bodies)
+
+    def _read_back(self, scene: Scene) -> str:
+        s, space, masses = self.settings, self.space, {}
+        for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
+            masses[f"mass {number}"] = (wanted.mass, found.mass)
+            masses[f"moment {number}"] = (wanted.inertia[1] * self._unit**2, found.moment)
+        return disagreement(
+            {
+                **masses,
+                "friction": (s.friction, self.corners[0].friction * self.floors[0].friction),
+                "iterations": (self._iterations, space.iterations),
+                "slop": (None if s.margin else s.slop, space.collision_slop),
+                "bias": (s.bias, space.collision_bias),
+            }
+        )
+
+
+def boxed(body: Body, unit: float, deeper: float = 0.0) -> list[tuple[float, float]]:
+    """Return the corners of a body, about its centre, the lower face so much deeper in it."""
+    x, z = 0.5 * body.width * unit, 0.5 * body.height * unit
+    return [(-x, deeper - z), (x, deeper - z), (x, z), (-x, z)]
+
+
+def stay(body: Any, dt: float) -> None:
+    """Leave a body where it is: the adapter moves it."""
+
+
+def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
+    """Return a scene as calls of pymunk; see `engines.run.export`."""
+    notes, unit = Notes(), settings.unit
+    world = PymunkWorld(scene, settings, dt_s, notes.of(imported("pymunk"), "pymunk"))
+    notes.name(space=world.space, base=world.base, floor=world.floors)
+    notes.name(**{"box" if settings.geometry == "box" else "corner": world.corners})
+    notes.name_bodies(scene, world.bodies)
+    hold, floor = [], settings.floor if scene.frame == "world" else ""
+    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+    if world.margin:  # the corner about which the block turns is kept in contact
+        notes.listed(floors=world.floors)
+        held = f"{world.margin!r} if -side * bodies[0].angle >= {-LEVEL!r} else 0.0"
+        hold.append(f"for side, floor in zip({world.pivots}, floors):")
+        hold.append(f"    floor.unsafe_set_radius({held})")
+    moves = {"velocity": f"({x} - base.position.x) / DT", "both": velocity}
+    under = " - base.position.x" * bool(floor) + " + DT * base.velocity.x" * (floor == "velocity")
+    place = f"bodies[0].position.x{under}"  # a base that the library moves is a step ahead
+    return Script(
+        imports=("import pymunk", *("stay = lambda body, dt: None",) * (floor != "velocity")),
+        settings=(
+            f"space.step({dt_s!r})",
+            *notes.quoted("iterations", "collision_", ".Circle(", ".Poly(", ".filter", ".friction"),
+        ),
+        build=notes.lines(),
+        step=(
+            *hold,
+            *(f"base.velocity = {moves[way]}, 0.0" for way in moves if way == floor),
+            f"space.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
+            "space.step(DT)",
+            *(f"base.position = {x}, 0.0",) * (floor not in ("", "velocity")),
+        ),
+        pose=("theta, rate = -bodies[number].angle, -bodies[number].angular_velocity",),
+        place=place if unit == 1.0 else f"({place}) / {unit!r}",
+        moment=world.moment,
+    )
+
+
+TUNED = PymunkSettings(
+    geometry="corners",
+    friction=NO_JAM,
+    sweeps=20.0,
+    bias=0.0,
+    margin=10.0,
+    floor="both",
+)
+LANDING = replace(TUNED, positions=True, reflection=True)
+
+DOCUMENTED = (
+    Citation("step", "space.step(0.02)", "README, the first example"),
+    Citation("iterations", "10, the default", "Space.iterations"),
+    Citation("collision_slop", "0.1, the default", "Space.collision_slop"),
+    Citation("sleeping", "off: sleep_time_threshold is inf", "Space.sleep_time_threshold"),
+    Citation("friction", "0, of a pair the product; here 1", "Shape.friction, cpArbiter.c"),
+    Citation("warm starting", "all of the last step's impulses", "cpSpaceStep.c"),
+    Citation(
+        "collision_persistence",
+        "3 steps; with 0 nothing is left to start from, and a block slides",
+        "cpSpace.c",
+    ),
+    Citation(
+        "without effect",
+        "collision_bias 0.9^60 a second, of what exceeds the slop; damping 1; elasticity 0",
+        "cpSpace.c, cpShape.c",
+    ),
+    Citation("floor", "Body.KINEMATIC, by its velocity", "Body.KINEMATIC, on platforms"),
+)
+"""What its documentation sets, in pymunk 7.3.1."""
+
+RECOMMENDED = (
+    Citation("step", "ten of a tenth", "Space.step: multiple calls with a smaller dt"),
+    Citation(
+        "collision_slop",
+        "as high as you can without noticeable overlapping: here 1 mm",
+        "Space.collision_slop",
+    ),
+)
+"""What it recommends for stable and accurate contact."""
+
+FACTORS = (
+    factor("geometry"),
+    factor("positions", level("moved by the adapter", positions=True), by_default=False),
+    Factor(
+        "iterations",
+        ("iterations", "sweeps"),
+        (level("100", iterations=100),),
+    ),
+    factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
+    factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
+    factor("unit", level("the README's 100 in a metre", ("naive",), unit=100.0)),
+    factor("slop", level("0", ("naive",), slop=0.0), level("1e-4 m", ("naive",), slop=1e-4)),
+    factor("friction", level("5", friction=5.0, trap="Painlevé's paradox: the pivot jams")),
+    moving_base("both", "velocity", "position"),
+)
+
+
+RULES = (
+    Rule(
+        "Keep the step of `space.step` the same: the impulses it starts from are scaled by the "
+        "ratio of two steps",
+        *("landing", LEFT_OUT, "positions"),
+    ),
+    Rule(
+        "Step finer than 0.02 s: positions move by the velocities of the step before",
+        *(DEFAULT, OWN_STEPS, OWN_STEP),
+    ),
+    Rule(
+        "Leave `collision_slop` above 0: at 0 contacts come and go",
+        *(DEFAULT, "slop", "0"),
+    ),
+)
+
+NAIVE = Preset(
+    name="naive",
+    settings=PymunkSettings(),
+    step_s=LIBRARY_STEP_S,
+    documented=DOCUMENTED,
+    frame="world",
+    deviations=(Deviation.MIRROR,),
+    own={"friction": 0.0},
+)
+
+ENGINE = Engine(
+    name="pymunk",
+    title="pymunk",
+    library="pymunk",
+    packages=("pymunk",),
+    install="rocking[pymunk]",
+    build=PymunkWorld,
+    abilities=(Ability.SEVERAL, Ability.STACKED),
+    presets=(
+        NAIVE,
+        NAIVE.at_rest(Deviation.MIRROR, Deviation.PEAK, Deviation.RECORD),
+        NAIVE.recommended(
+            *RECOMMENDED, deviations=(Deviation.MIRROR,), step_s=LIBRARY_STEP_S / 10.0, slop=1e-3
+        ),
+        Preset(
+            name="fixed",
+            settings=TUNED,
+            step=2.5e-4,
+            helped_by={Help.MARGIN: {"margin": None}},
+        ),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            stacked={"sweeps": 400.0},  # the heavier what rests on others, the slower they converge
+            helped_by={
+                Help.STEPS: None,
+                Help.POSITIONS: {"positions": False},
+                Help.REFLECTION: {"reflection": False},
+                Help.MARGIN: {"margin": None},
+            },
+        ),
+    ),
+    geometries=("box", "corners"),
+    script=script,
+    factors=FACTORS,
+    rules=RULES,
+)
