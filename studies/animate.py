@@ -1,48 +1,39 @@
 """A film of one scene: several sources side by side, on the same shaken base and clock."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from analytic.response import Outcome
 from analytic.slide import SlidingBlock
-from studies.cases.paper import Case, free_rocking_window
+from studies.cases.paper import free_rocking_window
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import Place, Positive, Sources, check_writable, refuse_given, required
+from studies.kit.arguments import Place, Sources, check_writable
 from studies.kit.cluster import place_of
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.options import Computing, Yours
 from studies.kit.run import Place as Where
 from studies.kit.run import exit_code, here, run
 from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless
-from studies.kit.store import check
 from studies.sources.registry import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
 FRAMES_A_SECOND, MOST_FRAMES, MOST_SOURCES = 25, 1500, 8
 """At most a minute of film, which holds up to 1 GB of memory while it is drawn."""
-CASE = ("figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p")
 
 
 def command(
     *,
     out: Place,
-    width: Width | None = None,
-    height: Height | None = None,
+    width: Width,
+    height: Height,
     excitation: Excitation = Excitation(),  # noqa: B008
     standing: Standing = Standing(),  # noqa: B008
     yours: Yours = Yours(),  # noqa: B008
-    results: Place | None = None,
     sources: Sources = DEFAULT_SOURCES,
-    slower: Positive = 1.0,
     computing: Computing = Computing(),  # noqa: B008
 ) -> int:
     """A film of one block, frame or slide, as several sources move it side by side.
@@ -51,35 +42,22 @@ def command(
     ----------
     out
         The film: a .gif, or an .mp4 (which needs the extra [video]).
-    results
-        Instead of a block and what happens to it: results of `rocking sweep`, of which the case is
-        shown in which the sources differ most.
     sources
         As in `rocking compare`, at most 8; the models are not asked by default where nothing rocks.
-    slower
-        Seconds of film for a second of shaking.
     """
     if standing.scene == "slide" and sources == DEFAULT_SOURCES:  # it has no linearization
         sources = tuple(name for name in sources if name != "housner")
     check_film(out)
     if len(sources) > MOST_SOURCES:
         raise BadInputError(f"--sources are {len(sources)}; they must be at most {MOST_SOURCES}")
-    if results is None:
-        width, height = required("give them, or --results", width=width, height=height)
-        system = standing.system(width, height, yours.friction)
-        motion, start = excitation.pose(system)
-    else:
-        scene = asdict(standing) | {"scene": None if standing.scene == "block" else standing.scene}
-        given = {"width": width, "height": height, **scene, **asdict(excitation)}
-        refuse_given(given, "only without --results")
-        case = most_different(results, sources)
-        system, motion, start = case.block, case.motion, (0.0, 0.0)
+    system = standing.system(width, height, yours.friction)
+    motion, start = excitation.pose(system)
     window = free_rocking_window(system, motion)
     refuse_endless(system, window, dt=yours.dt)
-    frames = window * slower * FRAMES_A_SECOND
+    frames = window * FRAMES_A_SECOND
     if not frames < MOST_FRAMES:
-        seconds = f"{window:g} s at --slower {slower:g} are {frames:.3g} frames"
-        raise BadInputError(f"{seconds}; a film must have fewer than {MOST_FRAMES}")
+        words = f"{window:g} s are {frames:.3g} frames"
+        raise BadInputError(f"{words}; a film must have fewer than {MOST_FRAMES}")
     times = np.linspace(0.0, window, math.ceil(frames) + 1)
     shown = Question(system=system, motion=motion, start=start, duration=window, times=times)
     rows = moved(shown, sources, yours, place_of(computing, at_once=True))
@@ -101,31 +79,6 @@ def check_film(path: Path) -> None:
     if path.suffix == ".mp4" and find_spec("imageio_ffmpeg") is None:
         words = "that needs the extra [video]: pip install imageio-ffmpeg"
         raise BadInputError(f"--out is an .mp4; {words}")
-
-
-def most_different(results: Path, sources: Sequence[str]) -> Case:
-    """Return the case of a sweep in which the sources' peaks differ most.
-
-    Where outcomes differ it is the one whose least peak is smallest: what overturns is then
-    furthest from what does not.
-    """
-    path = results / "sweep.csv"
-    if not path.exists():
-        raise BadInputError(f"--results is {str(results)!r}; it must hold a sweep.csv")
-    check(results, [path.name], "--results")
-    rows = pd.read_csv(path)
-    peaks = rows.pivot(index=list(CASE), columns="source", values="peak_ratio").astype(float)
-    if missing := sorted(set(sources) - set(peaks.columns)):
-        words = f"its sweep.csv lacks {', '.join(missing)}"
-        raise BadInputError(f"--results is {str(results)!r}; {words}")
-    answered = peaks[list(sources)].dropna()
-    if answered.empty:
-        raise BadInputError(f"--results is {str(results)!r}; in each of its cases a source failed")
-    least, most = answered.min(axis=1), answered.max(axis=1)
-    apart = np.isinf(most) & np.isfinite(least)
-    ratios = (most / least).where(most > least, 1.0)
-    place: Any = least[apart].idxmin() if apart.any() else ratios.idxmax()
-    return Case(**dict(zip(CASE, place, strict=True)))
 
 
 def moved(case: Question, sources: Sequence[str], yours: Yours, place: Where = here) -> list[Row]:

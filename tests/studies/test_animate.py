@@ -1,11 +1,10 @@
-"""Films: what is shown, which case, what is refused."""
+"""Films: what is shown, and what a film that fails leaves."""
 
 import errno
 import math
 import os
 
 import numpy as np
-import pandas as pd
 import pytest
 from commanding import CASE, refused
 from given import BLOCK, PULSE
@@ -14,20 +13,17 @@ from PIL import Image
 
 from analytic import RockingFrame, SlidingBlock, Still
 from studies.__main__ import run
-from studies.animate import most_different, moved
-from studies.cases.refusal import BadInputError
+from studies.animate import moved
 from studies.drawing import film as film_module
 from studies.drawing.block import outlines
 from studies.drawing.film import Stage, verdict
 from studies.kit.jobs import Question
 from studies.kit.options import Yours
-from studies.kit.store import write_record
 
 
-def filmed(tmp_path, *options):
-    """Run a short film, and return its exit code and its path."""
-    film = tmp_path / "film.gif"
-    return run(["animate", *CASE, *options, "--slower", "0.1", "--out", str(film)]), film
+@pytest.fixture(autouse=True)
+def few_frames(monkeypatch):
+    monkeypatch.setattr("studies.animate.FRAMES_A_SECOND", 2)
 
 
 def drawn(panel):
@@ -59,19 +55,12 @@ def test_an_overturned_block_lies():
 def test_a_verdict_is_given_when_it_happens():
     theta = BLOCK.alpha * np.array([0.0, 0.2, 0.5, 0.3, 0.1])
     fallen = BLOCK.alpha * np.array([0.0, 1.1, 0.9, 1.2, 4.0])
-    rows = [{"source": "mujoco:naive", "outcome": "rocked", "theta": 0.8 * theta},
-            {"source": "housner", "outcome": "overturned", "theta": fallen},
-            {"source": "exact", "outcome": "rocked", "theta": theta},
-            {"source": "exact", "outcome": "at rest", "theta": 0.0 * theta}]  # fmt: skip
-    found = [verdict(row, theta, BLOCK) for row in rows]
-    assert found == [(2, "peak −20.0 %"), (3, "overturned"), (2, "peak 0.50 θcr"), (4, "at rest")]
-    box, place = SlidingBlock(width=1.0, height=0.5, friction=0.2), np.array([0.0, -0.2, 0.1])
-    rows = [{"source": name, "outcome": "slid", "theta": place * part}
-            for name, part in (("exact", 1.0), ("mujoco", 0.8))]  # fmt: skip
-    assert [verdict(row, place, box) for row in rows] == [
-        (2, "lies at +100.0 mm"),
-        (2, "−20 mm off"),
-    ]
+    rows = [("overturned", fallen), ("rocked", theta), ("at rest", 0.0 * theta)]
+    found = [verdict({"outcome": outcome, "theta": it}, BLOCK) for outcome, it in rows]
+    assert found == [(3, "overturned"), (2, "peak 0.50 θcr"), (4, "at rest")]
+    box = SlidingBlock(width=1.0, height=0.5, friction=0.2)
+    slid = {"outcome": "slid", "theta": np.array([0.0, -0.2, 0.1])}
+    assert verdict(slid, box) == (2, "lies at +100.0 mm")
 
 
 @pytest.mark.parametrize("theta", [0.2, -0.2])
@@ -80,7 +69,7 @@ def test_bodies_are_where_they_are_and_the_exact_outline_is_over_every_other(the
     rows = [{"source": name, "outcome": "rocked", "theta": np.array([0.0, part * theta])}
             for name, part in (("exact", 1.0), ("mujoco:naive", 0.5))]  # fmt: skip
     stage = Stage(frame, Still(), np.arange(2.0), rows)
-    stage.picture(1)
+    stage.show(1)
     first, second, _ = stage.figure.axes
     *columns, beam = drawn(first)
     shown = [outlines(frame, 0.5 * theta), outlines(frame, theta)]
@@ -93,19 +82,10 @@ def test_bodies_are_where_they_are_and_the_exact_outline_is_over_every_other(the
     assert low < min(beam[:, 0]) < max(beam[:, 0]) < high
 
 
-def test_what_stands_still_is_drawn_once_and_nothing_stays_of_a_picture_before():
-    times = np.linspace(0.0, 1.0, 11)
-    rows = [{"source": "exact", "outcome": "rocked", "theta": 0.3 * times}]
-    stage, fresh = (Stage(BLOCK, PULSE, times, rows) for _ in range(2))
-    pictures = [stage.picture(frame) for frame in (0, 10, 5)]
-    assert (pictures[-1] == fresh.picture(5)).all()
-    assert len({picture.tobytes() for picture in pictures}) == 3
-
-
 def test_a_film_moves_in_other_scenes_too_and_names_whom_it_cannot_show(tmp_path, capsys):
     frame = ("--scene", "frame", "--load", "2", "--sources", "exact", "rapier:landing")
-    code, film = filmed(tmp_path, *frame)
-    assert code == 1
+    film = tmp_path / "film.gif"
+    assert run(["animate", *CASE, *frame, "--out", str(film)]) == 1
     assert "failed: rapier:landing: not available: " in capsys.readouterr().err
     with Image.open(film) as images:
         assert images.n_frames > 5
@@ -127,34 +107,6 @@ def test_a_film_begins_where_the_block_is_released(tmp_path, monkeypatch):
         assert 0.0 < rate < 2.0 * block.alpha * block.p
 
 
-def sweep(folder, peaks):
-    common = {"figure": 8, "pulse": "full-sine", "excess_g": 0.1, "aspect": 3, "width_m": 0.5}
-    rows = [
-        {**common, "omega_over_p": omega, "source": source, "peak_ratio": peak}
-        for omega, pair in peaks.items()
-        for source, peak in zip(("exact", "housner"), pair, strict=True)
-    ]
-    pd.DataFrame(rows).to_csv(folder / "sweep.csv", index=False)
-    write_record(folder, {})
-
-
-def test_the_case_is_the_one_where_the_sources_differ_most(tmp_path):
-    sweep(tmp_path, {1.0: (0.5, 0.6), 1.1: (0.1, 0.2), 1.2: (math.inf, math.inf)})
-    assert most_different(tmp_path, ["exact", "housner"]).omega_over_p == 1.1
-    sweep(tmp_path, {1.0: (0.5, math.inf), 1.1: (0.1, 0.9), 1.2: (0.3, math.inf)})
-    assert most_different(tmp_path, ["exact", "housner"]).omega_over_p == 1.2
-    with pytest.raises(BadInputError, match="lacks mujoco"):
-        most_different(tmp_path, ["mujoco"])
-
-
-@pytest.mark.parametrize("content", ["", "figure,source,peak_ratio\n8,exact,0.5\n"])
-def test_what_no_sweep_wrote_is_refused(content, tmp_path, capsys):
-    (tmp_path / "sweep.csv").write_text(content)
-    film = tmp_path / "film.gif"
-    refused(capsys, ["animate", "--results", tmp_path, "--out", film], "--results", "sweep.csv")
-    assert not film.exists()
-
-
 def test_a_film_that_cannot_be_finished_leaves_what_was_there(tmp_path, monkeypatch, capsys):
     def full(*_, **__):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -162,7 +114,7 @@ def test_a_film_that_cannot_be_finished_leaves_what_was_there(tmp_path, monkeypa
     film = tmp_path / "film.gif"
     film.write_bytes(b"before")
     monkeypatch.setattr(Image.Image, "save", full)
-    arguments = [*CASE, "--sources", "exact", "--slower", "0.1", "--out", str(film)]
+    arguments = [*CASE, "--sources", "exact", "--out", str(film)]
     refused(capsys, ["animate", *arguments], "No space left", str(film))
     assert film.read_bytes() == b"before"
     assert [path.name for path in tmp_path.iterdir()] == ["film.gif"]

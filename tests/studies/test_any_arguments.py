@@ -34,7 +34,7 @@ BEGINNINGS = {
     "compare": [(*begin, "--sources", "exact") for begin in (CASE, RECORD, RELEASE)],
     "blocks": [("CABINETS", "--record", "RECORD", "--units", "g", "--out", "FOLDER")],
     "score": [("pybullet", "--out", "FOLDER", "--quick")],
-    "animate": [(*CASE, "--out", "film.gif"), ("--results", "FOLDER", "--out", "film.gif")],
+    "animate": [(*CASE, "--out", "film.gif")],
     "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
     "doctor": [()],
     "readme": [()],

@@ -57,7 +57,6 @@ histories --figure 3 --out DIR | --figure is '3' | 2, 4, 5
 sweep --time-limit 1e150 --out DIR | --time-limit is '1e150' | up to 1e9
 precision --out DIR --time-limit nan | --time-limit is 'nan' | positive
 histories --out DIR --jobs 1.5 | --jobs is '1.5' | whole
-animate CASE --slower 0 --out film.gif | --slower is '0' | positive
 blocks list.csv --record X.AT2 --scale 0 --out DIR | --scale is '0'; it must be a positive finite
 blocks list.csv --record X.AT2 --scale 1 x --out DIR | --scale is 'x'
 blocks list.csv --record X.AT2 --scale 2 2 --out DIR | --scale names 2.0 twice
@@ -114,7 +113,7 @@ compare BLOCK --omega 3 | --amplitude missing
 compare BLOCK --amplitude 0.4 | --omega missing
 export BLOCK --out DIR --engine mujoco | --amplitude and --omega missing
 compare --height 1.5 PULSE | --width missing | requires
-animate --out film.gif | --width | missing
+animate --out film.gif | --width
 compare BLOCK --record X.AT2 --omega 3 | --omega is 3.0; it may be given only without --record
 compare BLOCK --record X.AT2 --pulse half-sine | --pulse is half-sine | without --record
 compare BLOCK --record X.AT2 --half-cycles 2 | --half-cycles is 2 | without --record
@@ -177,10 +176,6 @@ compare CASE --scene slide --friction 0 | --friction is 0
 compare CASE --scene slide --friction 0.2 --plot x.png | only where something rocks
 compare CASE --scene slide --friction 0.2 --sources dop853 | 'dop853' cannot be asked so
 compare CASE --scene bridge | --scene is 'bridge'; it must be among block, frame, slide
-animate --results results --load 2 --out film.gif | --load is 2.0 | without --results
-animate CASE --results results --out film.gif | --width | --results
-animate --results results --out film.gif | --results | sweep.csv
-animate --results results --tilt 0.5 --degrees --out film.gif | --tilt | --degrees | --results
 
 # where the results go
 compare CASE --plot a.txt | --plot is 'a.txt' | .png
@@ -209,8 +204,6 @@ compare --width 1e-99 --height 1e-99 PULSE | --width is 1e-99 | 1/p
 export CASE --engine mujoco --out DIR --step 1e-300 | --step is '1e-300' | at least 1e-07
 export BLOCK --engine mujoco --out DIR --amplitude 0.4 --omega 1e-9 | --width is 0.5 | at most
 animate BLOCK --amplitude 1 --omega 1e-9 --out a.gif | --width | 1/p
-animate CASE --slower 1e9 --out film.gif | --slower 1e+09 | 1500
-animate CASE --slower 1e308 --out film.gif | --slower 1e+308 | 1500
 validate --out DIR --step 9e-8 | --step is '9e-8' | at least 1e-07
 validate --halves --out DIR --step 1e-300 | --step is '1e-300' | at least 1e-07
 """
