@@ -17,7 +17,7 @@ COMMANDS = {
     "contact": "What each setting of an engine's contact costs and buys.",
     "restitution": "One strike: which coefficient of restitution each engine gives.",
     "stability": "Stiff and extreme cases: who stays finite and predicts the outcome.",
-    "overturning": "Which pulses overturn a block: maps, and the edges between them.",
+    "overturning": "Which pulses overturn a block: maps, and where models and engines are wrong.",
     "score": "One engine, yours perhaps: what it predicts, and whether it got worse.",
     "doctor": "What is installed, and whether it works.",
     "report": "Every study, and one page that shows what they found.",
