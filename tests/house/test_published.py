@@ -11,7 +11,7 @@ from PIL import Image
 
 from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
 from engines import ENGINES, installed_engines
-from studies import respond, sweep
+from studies import overturning, respond, sweep
 from studies.cases.paper import Case
 from studies.kit.pictures import save_all
 from studies.kit.run import makers_of
@@ -97,16 +97,15 @@ def test_linearizations_are_what_comes_out_today():
     pd.testing.assert_frame_equal(today, kept, check_dtype=False, rtol=1e-9)
 
 
-def test_edges_of_the_overturning_map_are_where_they_were():
-    table = published("overturning/boundaries.csv")
-    for row in table.groupby("model").sample(12, random_state=7).itertuples():
-        middle = 0.5 * (row.low + row.high)
-        onset = math.tan(row.alpha)
-        modes = [
-            int(overturning_modes(row.alpha, onsets * onset, row.omega_over_p, 2, row.model).mode)
-            for onsets in (middle * (1 - 1e-9), middle * (1 + 1e-9))
-        ]
-        assert modes == [row.below, row.above]
+def test_cells_of_the_overturning_map_are_what_they_were():
+    tables = overturning.STUDY.read(PUBLISHED / "overturning")
+    window = overturning.window_of(tables["window"])
+    for model, areas in tables["map"].groupby("model"):
+        column = np.s_[::97]
+        alpha, ratios = math.atan(1.0 / window.aspect), window.ratios(window.columns)[column, None]
+        amplitudes = window.amplitudes(window.rows) * math.tan(alpha)
+        modes = overturning_modes(alpha, amplitudes, ratios, 2, model).mode
+        assert (modes == overturning.modes_of(areas, window)[column]).all()
 
 
 @pytest.mark.slow
