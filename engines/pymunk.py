@@ -272,7 +272,7 @@ def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
     world = PymunkWorld(scene, settings, dt_s, notes.of(imported("pymunk"), "pymunk"))
     notes.name(space=world.space, base=world.base, floor=world.floors)
     notes.name(**{"box" if settings.geometry == "box" else "corner": world.corners})
-    notes.name_bodies(scene, world.bodies)
+    notes.name_bodies(world.bodies)
     hold, floor = [], settings.floor if scene.frame == "world" else ""
     x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
     if world.margin:  # the corner about which the block turns is kept in contact

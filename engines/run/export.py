@@ -8,7 +8,7 @@ was made, and adds the lines that take a step and read the pose::
         notes = Notes()
         world = PymunkWorld(scene, settings, dt_s, notes.of(imported("pymunk"), "pymunk"))
         notes.name(space=world.space, floor=world.base)
-        notes.name_bodies(scene, world.bodies)
+        notes.name_bodies(world.bodies)
         return Script(
             imports=("import pymunk",),
             settings=(f"space.step({dt_s!r})", *notes.quoted("iterations", ".friction")),
@@ -19,30 +19,32 @@ was made, and adds the lines that take a step and read the pose::
             moment=world.moment,
         )
 
-A call is written down where it changes something (it returns nothing) or makes an object, whose
-name is that of the function until the adapter gives it another; an object that is used once, in the
-next call, stands there. A call that returns numbers or words is a question, and is not written
-down, but for ``create...``, ``add...`` and ``load...``, whose number stands for what they made.
+``PymunkWorld`` builds with the library that it is given, or imports it; it neither closes nor steps
+what is noted. A call is written down where it changes something (it returns nothing) or makes an
+object, whose name is that of the function until the adapter gives it another; an object that is
+used once, as an argument of the next call, stands there. A call that returns numbers, words or an
+array is a question, and is not written down, but for ``create...``, ``add...`` and ``load...``,
+whose number stands for what they made. `constant` is a number that a script writes as a formula.
 """
 
+import itertools
 import re
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from inspect import isfunction
 from textwrap import wrap
 from typing import Any
 
 import numpy as np
 
-from engines.scene import Scene
 from engines.world import Script
 
 PLAIN = (bool, int, float, str, bytes, type(None))
-MAKES = ("create", "add", "load")
+MAKING = re.compile("(create|add|load)_?")
 """How functions begin whose number stands for what they made."""
 
 TOKEN = re.compile("\x02(\\d+)\x03")
-"""What stands for the name of a noted object until the lines are written."""
+"""What stands for the name of an object until the lines are written."""
 
 NUMBERED = re.compile(r"_\d+\b")
 WIDTH = 99
@@ -50,12 +52,16 @@ WIDTH = 99
 
 @dataclass(slots=True)
 class _Made:
-    """An object that a call made: in which line, by which function, and where it is used."""
+    """An object that a call made: by which function, in which line, and where it is used.
 
-    line: int
+    One that something is done to, or that is asked for a part, is not used as an argument alone.
+    """
+
     function: str
-    uses: list[int] = field(default_factory=list)
+    line: int
     name: str = ""
+    uses: list[int] = field(default_factory=list)
+    argument: bool = True
 
 
 class Notes:
@@ -69,7 +75,7 @@ class Notes:
 
     def __init__(self, without: Sequence[str] = ()) -> None:
         self._without = without
-        self._lines: list[str] = []
+        self._lines: list[tuple[str, Sequence[int]]] = []
         self._made: list[_Made] = []
         self._known: dict[int, Noted] = {}
 
@@ -82,9 +88,12 @@ class Notes:
         for name, objects in made.items():
             each = objects if isinstance(objects, list | tuple) else [objects]
             for number, it in enumerate(each, 1):
-                self._made[_number(it)].name = name if number == 1 else f"{name}_{number}"
+                found = TOKEN.fullmatch(str(it.noted_name))
+                if found is None:
+                    raise TypeError(f"{it.noted_name} was not made by a call")
+                self._made[int(found[1])].name = name if number == 1 else f"{name}_{number}"
 
-    def name_bodies(self, scene: Scene, bodies: Sequence[Any]) -> None:
+    def name_bodies(self, bodies: Sequence[Any]) -> None:
         """Give bodies names, of a block or of columns and a beam, and list them as `bodies`."""
         *below, top = bodies
         self.name(**({"column": below, "beam": top} if below else {"block": top}))
@@ -93,7 +102,7 @@ class Notes:
     def listed(self, **made: Sequence[Any]) -> None:
         """Note lines by which what was made is in a list of a name."""
         for name, objects in made.items():
-            self._lines.append(f"{name} = {self.said(list(objects))}")
+            self.write(f"{name} = {self.said(list(objects))}")
 
     def lines(self) -> tuple[str, ...]:
         """Return the lines, as wide as those of this project at most."""
@@ -110,73 +119,92 @@ class Notes:
     def _whole(self) -> list[str]:
         """Return the lines, long ones unbroken."""
         inside = self._inside()
-        counts: Counter[str] = Counter(each.name for each in self._made if each.name)
-        names: dict[int, str] = {}
-        for number, each in enumerate(self._made):
-            counts[each.function] += not each.name and number not in inside
-            count = counts[each.function]
-            usual = each.function if count == 1 else f"{each.function}_{count}"
-            names[number] = each.name or usual
+        names = self._names(inside)
 
         def said(found: re.Match[str]) -> str:
             number = int(found[1])
-            if number not in inside:
-                return names[number]
-            call = self._lines[self._made[number].line].partition(" = ")[2]
-            return TOKEN.sub(said, call)
+            if number in inside:
+                return TOKEN.sub(said, self._lines[self._made[number].line][0])
+            return names[number]
 
-        gone = {self._made[number].line for number in inside}
-        return [TOKEN.sub(said, line) for n, line in enumerate(self._lines) if n not in gone]
+        return [
+            " = ".join(filter(None, (", ".join(names[it] for it in made), TOKEN.sub(said, call))))
+            for call, made in self._lines
+            if not inside.intersection(made)
+        ]
 
-    def said(self, value: Any) -> str:
+    def _inside(self) -> set[int]:
+        """Return the numbers of objects that stand where they are used, without a name."""
+        inside, gone = set[int](), set[int]()
+        for number, made in reversed([*enumerate(self._made)]):
+            once = len(made.uses) == 1 and len(self._lines[made.line][1]) == 1
+            between = range(made.line + 1, made.uses[0]) if once else ()
+            if once and made.argument and not made.name and gone.issuperset(between):
+                inside.add(number)
+                gone.add(made.line)
+        return inside
+
+    def _names(self, inside: set[int]) -> list[str]:
+        """Return the names of objects: given ones, or their function's; none where none is used."""
+        taken, names = {made.name for made in self._made}, []
+        for number, made in enumerate(self._made):
+            usual = MAKING.sub("", made.function, count=1) or made.function
+            free = (f"{usual}_{n}" if n > 1 else usual for n in itertools.count(1))
+            needed = number not in inside and (made.uses or len(self._lines[made.line][1]) > 1)
+            own = next(name for name in free if name not in taken) if needed else ""
+            names.append(made.name or own)
+            taken.add(names[-1])
+        return names
+
+    def said(self, value: Any, *, argument: bool = True) -> str:
         """Return a value as Python; TypeError unless it is plain or was made by what is noted."""
         if isinstance(value, Noted | Constant):
             text = str(value.noted_name)
             for found in TOKEN.finditer(text):
-                self._made[int(found[1])].uses.append(len(self._lines))
+                made = self._made[int(found[1])]
+                made.uses.append(len(self._lines))
+                made.argument = made.argument and argument and text == found[0]
             return text
-        if isinstance(value, np.ndarray):
-            return f"np.array({self.said(value.tolist())})"
-        if isinstance(value, np.generic):
-            value = value.item()
-        if isinstance(value, float):
-            return re.sub(r"(inf|nan)", r"math.\1", repr(float(value)))
-        if isinstance(value, PLAIN):
-            return repr(value)
         if isinstance(value, dict):
-            return f"{{{', '.join(f'{key!r}: {self.said(it)}' for key, it in value.items())}}}"
+            pairs = (f"{self.said(key)}: {self.said(it)}" for key, it in value.items())
+            return f"{{{', '.join(pairs)}}}"
         if isinstance(value, list):
             return f"[{', '.join(map(self.said, value))}]"
         if isinstance(value, tuple):
             return f"({', '.join(map(self.said, value))}{',' * (len(value) == 1)})"
-        if isinstance(value, slice):
-            return ":".join("" if it is None else self.said(it) for it in (value.start, value.stop))
-        if callable(value) and type(value).__name__ == "function":
-            return str(value.__name__)  # an adapter's own, which its script defines
-        raise TypeError(f"{value!r} is no value that can be written down")
+        return plain(value)
 
-    def write(self, line: str) -> None:
-        """Note a line."""
-        self._lines.append(line)
+    def write(self, line: str, made: Sequence[int] = ()) -> None:
+        """Note a line, and the numbers of what it made."""
+        self._lines.append((line, made))
 
     def called(self, function: "Noted", given: Sequence[Any], named: Mapping[str, Any]) -> Any:
         """Call a function, note it, and return what it returns, noted."""
         it = bare(function)(*map(bare, given), **{key: bare(one) for key, one in named.items()})
-        kind = str(function.noted_name).rpartition(".")[2]
-        plain = it is not None and isinstance(it, PLAIN) and not kind.startswith(MAKES)
-        if plain or isinstance(it, np.ndarray):
+        kind = str(function.noted_name).rpartition(".")[2].lower()
+        if isinstance(it, np.ndarray) or (isinstance(it, PLAIN[:-1]) and not MAKING.match(kind)):
             return it
         shown = [
             f"{key}={self.said(one)}" for key, one in named.items() if key not in self._without
         ]
-        call = f"{self.said(function)}({', '.join([*map(self.said, given), *shown])})"
+        arguments = ", ".join([*map(self.said, given), *shown])
+        call = f"{self.said(function, argument=False)}({arguments})"
         if it is None or id(it) in self._known:
-            self._lines.append(call)
+            self.write(call)
             return self._known.get(id(it))
-        several = list(it) if type(it) in (list, tuple) else [it]
-        made = [self._object(each, kind) for each in several]
-        self._lines.append(f"{', '.join(str(each.noted_name) for each in made)} = {call}")
-        return type(it)(made) if type(it) in (list, tuple) else made[0]
+        several = type(it) in (list, tuple)
+        first = len(self._made)
+        made = [self._object(each, kind) for each in (it if several else [it])]
+        self.write(call, range(first, len(self._made)))
+        return type(it)(made) if several else made[0]
+
+    def _object(self, it: Any, function: str) -> Any:
+        name = f"\x02{len(self._made)}\x03"
+        self._made.append(_Made(function, len(self._lines)))
+        if isinstance(it, PLAIN):
+            return constant(it, name)
+        self._known[id(it)] = noted = Noted(self, it, name)
+        return noted
 
     def found(self, it: Any, name: str) -> Any:
         """Return a part of something noted: a plain value as it is, or named where it is fixed."""
@@ -186,58 +214,34 @@ class Notes:
             return type(it)(self.found(each, f"{name}[{n}]") for n, each in enumerate(it))
         return self._known.get(id(it)) or Noted(self, it, name)
 
-    def _object(self, it: Any, function: str) -> Any:
-        name = f"\x02{len(self._made)}\x03"
-        self._made.append(_Made(len(self._lines), function.lower()))
-        if isinstance(it, PLAIN):
-            return constant(it, name)
-        self._known[id(it)] = noted = Noted(self, it, name)
-        return noted
-
-    def _inside(self) -> set[int]:
-        """Return the numbers of objects that stand where they are used, without a name."""
-        inside, gone = set[int](), set[int]()
-        for number in reversed(range(len(self._made))):
-            each = self._made[number]
-            alone = sum(other.line == each.line for other in self._made[number - 1 : number + 2])
-            if each.name or len(each.uses) != 1 or alone > 1:
-                continue
-            if gone.issuperset(range(each.line + 1, each.uses[0])):
-                inside.add(number)
-                gone.add(each.line)
-        return inside
-
 
 class Noted:
     """An object of a library; what is done to it is done, and noted under its name."""
-
-    def __init__(self, notes: Notes, it: Any, name: str) -> None:
-        for key, value in (("notes", notes), ("it", it), ("name", name)):
-            object.__setattr__(self, f"noted_{key}", value)
 
     noted_notes: Notes
     noted_it: Any
     noted_name: str
 
+    def __init__(self, notes: Notes, it: Any, name: str) -> None:
+        for key, value in (("notes", notes), ("it", it), ("name", name)):
+            object.__setattr__(self, f"noted_{key}", value)
+
     def __getattr__(self, name: str) -> Any:
         return self.noted_notes.found(getattr(self.noted_it, name), f"{self.noted_name}.{name}")
 
     def __setattr__(self, name: str, value: Any) -> None:
-        text = self.noted_notes.said(self)
-        self.noted_notes.write(f"{text}.{name} = {self.noted_notes.said(value)}")
+        notes = self.noted_notes
+        notes.write(f"{notes.said(self, argument=False)}.{name} = {notes.said(value)}")
         setattr(self.noted_it, name, bare(value))
 
     def __getitem__(self, key: Any) -> Any:
-        text = f"{self.noted_name}[{self.noted_notes.said(key)}]"
-        return self.noted_notes.found(self.noted_it[key], text)
+        notes = self.noted_notes
+        return notes.found(self.noted_it[key], f"{self.noted_name}[{notes.said(key)}]")
 
     def __setitem__(self, key: Any, value: Any) -> None:
-        text = f"{self.noted_notes.said(self)}[{self.noted_notes.said(key)}]"
-        self.noted_notes.write(f"{text} = {self.noted_notes.said(value)}")
+        notes = self.noted_notes
+        notes.write(f"{notes.said(self, argument=False)}[{notes.said(key)}] = {notes.said(value)}")
         self.noted_it[key] = bare(value)
-
-    def __iter__(self) -> Iterator[Any]:
-        return (self[number] for number in range(len(self.noted_it)))
 
     def __array__(self, *asked: Any, **named: Any) -> Any:
         return np.asarray(self.noted_it, *asked, **named)
@@ -258,6 +262,23 @@ def constant(value: Any, name: str) -> Any:
         return value
     kind = type("Constant", (type(value), Constant), {"noted_name": name})
     return kind(value)
+
+
+def plain(value: Any) -> str:
+    """Return a value that no library made, and that is no collection, as Python."""
+    if isinstance(value, np.ndarray):
+        return f"np.array({value.tolist()!r})"
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float):
+        return re.sub("(inf|nan)", r"math.\1", repr(float(value)))
+    if isinstance(value, PLAIN):
+        return repr(value)
+    if isinstance(value, slice):
+        return ":".join("" if it is None else repr(it) for it in (value.start, value.stop))
+    if isfunction(value):
+        return value.__name__  # an adapter's own, which its script defines
+    raise TypeError(f"{value!r} is no value that can be written down")
 
 
 def bare(value: Any) -> Any:
@@ -285,14 +306,6 @@ def broken(line: str) -> list[str]:
         text, WIDTH, subsequent_indent=" " * 4, break_long_words=False, break_on_hyphens=False
     )
     return [part.replace("\x04", " ") for part in parts]
-
-
-def _number(it: Any) -> int:
-    """Return the number of a noted object that a call made."""
-    found = TOKEN.fullmatch(str(getattr(it, "noted_name", "")))
-    if found is None:
-        raise TypeError(f"{it!r} was not made by a call that is noted")
-    return int(found[1])
 
 
 __all__ = ["Notes", "Script", "constant", "scaled"]

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import engines
+from engines.registry import OWN
 from studies.sources.registry import Source
 
 ENGINES_AT = Path(engines.__file__).parent
@@ -108,8 +109,8 @@ def maker_of(source: Source, measure: Callable[..., Any]) -> Maker:
     known = (ROOT / "analytic" / f"{name}.py" for name in describing)
     # what a study measures may take the exact solution beside the engine's answer
     made["analytic"] = code_in(*known) if measured == {ANSWER} else _reference()
-    shared = (ENGINES_AT / name for name in ("parts", "run"))
-    made["engines"] = code_in(*ENGINES_AT.glob("*.py"), *shared)
+    own = [file for file in ENGINES_AT.glob("*.py") if file.stem not in OWN]
+    made["engines"] = code_in(*own, ENGINES_AT / "parts", ENGINES_AT / "run")
     made["studies"] = code_in(*measured, SOURCES / "registry.py")
     return {**made, f"code of {source.engine}": code_in(_code_of(source.declared.build.__module__))}
 

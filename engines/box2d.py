@@ -1,0 +1,464 @@
+"""Box2D: settings, presets, and how a scene is built, set, read back and stepped.
+
+The library computes in single precision, and clamps without a word what moves further than two
+units of length in a step: a tuned preset counts in parts of the block's height. Contacts lie
+halfway between the surfaces of two shapes, so that half of the pivot's margin is the corner's
+radius, and half is the height by which its floor is raised.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from engines.declaration import (
+    AS_BEST,
+    ASLEEP,
+    BEST,
+    BY_DEFAULT,
+    DEFAULT,
+    SLEEP,
+    Citation,
+    Deviation,
+    Engine,
+    Factor,
+    Help,
+    Precision,
+    Preset,
+    Rule,
+    Stepping,
+    factor,
+    level,
+    moving_base,
+)
+from engines.parts import FLOOR_HEIGHTS, NO_JAM, Counted, fall, imported, iterations_for
+from engines.run.export import Notes, Script, scaled
+from engines.scene import BASE, Ability, Scene
+from engines.settings import check, disagreement, setting
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
+
+MOST_REFLECTION = 2.0
+"""A step that is much longer than the one before gives back no more than this part."""
+
+DEEPER = 3.0
+"""By how many of a pivot's reaches a free corner above is out of reach before an impact."""
+
+MANUAL_ITERATIONS = 6
+"""For velocities: of the library's own hello world."""
+
+LIBRARY_STEP_S = 1.0 / 60.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Box2DSettings(Counted):
+    """Settings of Box2D, by default those of its own first example.
+
+    Attributes
+    ----------
+    geometry : str
+        "box": one polygon on another, or "corners": circles at the corners, each on a polygon of
+        its own.
+    friction : float
+        Coefficient between block and base.
+    iterations : int or None
+        Of the solver, for velocities.
+    position_iterations : int
+        And for positions.
+    sweeps : float or None
+        Iterations over 1/sin^2(alpha), where `iterations` are None; the manual's 6 if both are.
+    units : float or None
+        Units of length in the height of the block; None counts in metres.
+    centred : bool
+        Count heights from where the block's centre is at rest, not from the base: in single
+        precision the least heights are told apart near 0.
+    skins_below : bool
+        Lower a floor by the skins that the library gives polygons, so that it acts where it is.
+    continuous : bool
+        Whether the library looks for impacts within a step.
+    margin : float or None
+        Gap over (alpha p dt)^2 H up to which the corner about which the block turns is kept in
+        contact.
+    reflection : bool
+        Give the pivot's velocity back while the block turns about it, by the velocity of its floor.
+    sleeping : bool
+        Whether a block that has hardly moved for half a second is no longer simulated.
+    floor : str
+        How a base that moves is moved: by its "velocity", by "both" its place and its velocity, or
+        by "position" alone.
+    restitution : float
+        Coefficient of the block; of a pair the library takes the larger one.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    friction: float = setting(1.0, least=0.0)
+    iterations: int | None = setting(None, least=1)
+    position_iterations: int = setting(2, least=0)
+    sweeps: float | None = setting(None, above=0.0)
+    units: float | None = setting(None, above=0.0)
+    centred: bool = False
+    skins_below: bool = False
+    continuous: bool = True
+    margin: float | None = setting(None, above=0.0)
+    reflection: bool = False
+    sleeping: bool = True
+    floor: str = setting("velocity", names=("velocity", "both", "position"))
+    restitution: float = setting(0.0, least=0.0, most=1.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+class Box2DWorld:
+    """Bodies on one kinematic body, or on one for each corner of a block."""
+
+    moment = Moment.MIDDLE
+
+    def __init__(
+        self, scene: Scene, settings: Box2DSettings, dt_s: float, library: Any = None
+    ) -> None:
+        self._box2d: Any = imported("Box2D") if library is None else library
+        s = self.settings = settings
+        self._unit, self._sunk = s.unit_of(scene), s.sunk_of(scene)
+        self._reach = 0.5 * (s.margin or 0.0) * fall(scene, dt_s) * self._unit
+        iterations = iterations_for(scene, s.iterations, s.sweeps) or MANUAL_ITERATIONS
+        self.iterations = iterations, s.position_iterations
+        self._way = s.floor if scene.frame == "world" else ""
+        self._dt = self._speed = self._place = self.lag_m = 0.0
+        # a polygon acts from its skin on, and so does another one on it
+        skins = s.skins_below * (1.0 if s.geometry == "corners" else 2.0)
+        self._lowered: float = skins * self._box2d.b2_polygonRadius
+        self.world = self._box2d.b2World(gravity=(0.0, 0.0))
+        self.world.continuousPhysics = s.continuous
+        self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
+        self.floors = self._new_floors(FLOOR_HEIGHTS * scene.bodies[0].height * self._unit)
+        first = scene.bodies[0]
+        self._half = 0.5 * first.width * self._unit, 0.5 * first.height * self._unit
+        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
+        self._fault = self._read_back(scene)
+
+    def _new_body(self, scene: Scene, number: int) -> Any:
+        s, unit, body, box2d = self.settings, self._unit, scene.bodies[number], self._box2d
+        at, x, z = body.at, 0.5 * body.width * unit, 0.5 * body.height * unit
+        place = (at.x * unit, at.z * unit - self._sunk)
+        made = self.world.CreateDynamicBody(position=place, angle=-at.theta)
+        if s.geometry == "box":
+            shape = box2d.b2PolygonShape(box=(x, z))
+            made.CreateFixture(shape=shape, friction=self.friction, restitution=s.restitution)
+        else:
+            for contact in scene.layout.contacts:
+                if contact.body == number:
+                    self._new_corners(made, x, contact.face * z, contact.on)
+            if scene.layout.rests(number):
+                low = self._lowered - z
+                shape = box2d.b2PolygonShape(vertices=[(-x, low), (x, low), (x, z), (-x, z)])
+                meets = box2d.b2Filter(categoryBits=32, maskBits=16)
+                made.CreateFixture(shape=shape, friction=self.friction, filter=meets)
+        made.massData = box2d.b2MassData(
+            mass=body.mass, center=(0.0, 0.0), I=body.inertia[1] * unit**2
+        )
+        if not at.at_rest:
+            made.linearVelocity = (at.velocity_x * unit, at.velocity_z * unit)
+            made.angularVelocity = -at.rate
+        made.sleepingAllowed = s.sleeping  # the world's own doSleep is read back, and does nothing
+        return made
+
+    def _new_corners(self, made: Any, x: float, z: float, on: int) -> None:
+        """Make corners that meet a floor of their own side, or any body that rests on them."""
+        box2d = self._box2d
+        for side in (0, 1):
+            bits = (1 << side, 4 << side) if on == BASE else (16, 32)
+            shape = box2d.b2CircleShape(pos=((-x, x)[side], z), radius=self._reach)
+            meets = box2d.b2Filter(categoryBits=bits[0], maskBits=bits[1])
+            corner = made.CreateFixture(shape=shape, friction=self.friction, filter=meets)
+            corner.restitution = self.settings.restitution
+
+    def _new_floors(self, far: float) -> list[Any]:
+        box2d, corners, top = self._box2d, self.settings.geometry == "corners", -self._lowered
+        place, numbers = (0.0, self._reach - self._sunk), range(2 if corners else 1)
+        floors = [self.world.CreateKinematicBody(position=place) for _ in numbers]
+        for number, floor in enumerate(floors):
+            ground = [(-far, -far), (far, -far), (far, top), (-far, top)]
+            shape = box2d.b2PolygonShape(vertices=ground)
+            fixture = floor.CreateFixture(shape=shape, friction=self.friction)
+            if corners:
+                meets = box2d.b2Filter(categoryBits=4 << number, maskBits=1 << number)
+                fixture.filterData = meets
+        return floors
+
+    @property
+    def friction(self) -> float:
+        """Of each shape; of a pair the library takes the root of the product."""
+        return float(self.settings.friction)
+
+    def step(self, step: Step) -> None:
+        """Advance by a step."""
+        self.world.gravity = (step.pull_x * self._unit, step.pull_z * self._unit)
+        back, before, self._dt = 0.0, self._dt, step.dt_s
+        if (
+            self.settings.reflection
+            and before
+            and step.phase in (ContactPhase.SWING, ContactPhase.APPROACH)
+        ):
+            back = min(step.dt_s / before, MOST_REFLECTION)
+        led = self._way == "velocity"
+        at = (step.base_x - step.dt_s * step.base_velocity) * self._unit if self._way else 0.0
+        felt = step.base_velocity * self._unit if self._way == "both" else 0.0
+        for side, floor in zip((-1.0, 1.0), self.floors, strict=False):
+            pivot = step.phase is ContactPhase.REST or step.side in (side, 0.0)
+            if led:
+                felt = (step.base_x * self._unit - floor.position.x) / step.dt_s
+            else:
+                floor.position = (at, (self._reach if pivot else -self._reach) - self._sunk)
+            velocity = (felt, 0.0)
+            if back and pivot and step.side:
+                corner = side * self._half[0], -self._half[1]
+                x, z = self.bodies[0].GetLinearVelocityFromLocalPoint(corner)
+                velocity = (felt - back * (x - self._speed), -back * z)
+            floor.linearVelocity = velocity
+        self.world.Step(step.dt_s, *self.iterations)
+        self._speed, self._place = felt, step.base_x if self._way else 0.0
+        if led:
+            self._place = self.floors[0].position.x / self._unit
+            self.lag_m = max(self.lag_m, abs(self._place - step.base_x))
+
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        for number, body in enumerate(self.bodies):
+            x, z = body.position
+            place, level = x / self._unit - self._place, (z + self._sunk) / self._unit
+            self._state[number] = place, level, -body.angle, -body.angularVelocity
+        return self._state
+
+    def fault(self) -> str:
+        """Say which setting was not taken."""
+        return self._fault
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+        for body in (*self.bodies, *self.floors):
+            self.world.DestroyBody(body)
+
+    def _read_back(self, scene: Scene) -> str:
+        body, s, masses = self.bodies[0], self.settings, {}
+        for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
+            masses[f"mass {number}"] = (wanted.mass, found.mass)
+            inertia = wanted.inertia[1] * self._unit**2
+            masses[f"inertia {number}"] = (inertia, found.inertia)
+        return disagreement(
+            {
+                **masses,
+                "friction": (s.friction, body.fixtures[0].friction),
+                "restitution": (s.restitution, body.fixtures[0].restitution),
+                "sleeping": (s.sleeping, body.sleepingAllowed),
+                "continuous": (s.continuous, self.world.continuousPhysics),
+            },
+            Precision.SINGLE.value,
+        )
+
+
+class Box2DStacks(Box2DWorld):
+    """Columns that a beam rests on by a polygon for each side, whose skin says what touches it.
+
+    The free corners above come into contact with those below in the steps of an impact, and not
+    before it: the least that one of them comes early, the impact is split in two, and the peak is
+    20 % off. Nor does the solver begin with the impulses of the step before: from there it finds
+    columns that part, whose friction and load would hold, too.
+    """
+
+    def __init__(self, scene: Scene, settings: Box2DSettings, dt_s: float) -> None:
+        super().__init__(scene, settings, dt_s)
+        box2d, (*columns, beam) = self._box2d, self.bodies
+        self.world.warmStarting = False
+        self._skin, (first,) = box2d.b2_polygonRadius, beam.fixtures
+        apart = box2d.b2Filter(categoryBits=128, maskBits=64)
+        again = box2d.b2PolygonShape(vertices=first.shape.vertices)
+        second = beam.CreateFixture(shape=again, friction=first.friction, filter=apart)
+        for corner in (fixture for column in columns for fixture in column.fixtures):
+            x, z = corner.shape.pos
+            if x > 0.0 and z > 0.0:
+                corner.filterData = box2d.b2Filter(categoryBits=64, maskBits=128)
+        # a column that turns about its corner at +x bears the beam by the one at -x
+        self._tops = (1.0, first.shape), (-1.0, second.shape)
+
+    def step(self, step: Step) -> None:
+        """Advance by a step."""
+        strikes, reach = step.phase is ContactPhase.STRIKE, self._reach
+        free = -DEEPER * reach if step.phase is ContactPhase.APPROACH else -reach
+        for side, shape in self._tops:
+            touches = strikes or step.phase is ContactPhase.REST or step.side in (side, 0.0)
+            shape.radius = max(self._skin + (reach if touches else free), 0.0)
+        super().step(step._replace(side=0.0) if strikes else step)
+
+
+def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
+    """Return a scene as calls of Box2D; see `engines.run.export`."""
+    notes, unit = Notes(), settings.unit_of(scene)
+    world = Box2DWorld(scene, settings, dt_s, notes.of(imported("Box2D"), "Box2D"))
+    notes.name(world=world.world, floor=world.floors)
+    notes.name_bodies(world.bodies)
+    notes.listed(floors=world.floors)
+    floor = settings.floor if scene.frame == "world" else ""
+    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+    moves = {
+        "velocity": (f"linearVelocity = ({x} - floor.position.x) / DT, 0.0",),
+        "both": (
+            f"position = {x} - DT * {velocity}, floor.position.y",
+            f"linearVelocity = {velocity}, 0.0",
+        ),
+        "position": (f"position = {x} - DT * {velocity}, floor.position.y",),
+    }
+    step = f"world.Step({{}}, {', '.join(map(str, world.iterations))})"
+    led = f"floors[0].position.x / {unit!r}" if floor == "velocity" else "base_x"
+    return Script(
+        imports=("import Box2D",),
+        settings=(
+            step.format(repr(dt_s)),
+            *notes.quoted("continuous", "CreateFixture(", "filterData", "restitution", "sleeping"),
+        ),
+        build=notes.lines(),
+        step=(
+            f"world.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
+            *("for floor in floors:",) * bool(floor),
+            *(f"    floor.{line}" for line in moves.get(floor, ())),
+            step.format("DT"),
+        ),
+        pose=("theta, rate = -bodies[number].angle, -bodies[number].angularVelocity",),
+        place=f"bodies[0].position.x / {unit!r}" + f" - {led}" * bool(floor),
+    )
+
+
+TUNED = Box2DSettings(
+    geometry="corners",
+    friction=NO_JAM,
+    sweeps=10.0,
+    position_iterations=0,
+    units=50.0,
+    centred=True,
+    skins_below=True,
+    continuous=False,
+    margin=10.0,
+    sleeping=False,
+    floor="both",
+)
+LANDING = replace(TUNED, reflection=True)
+
+DOCUMENTED = (
+    Citation("step", "world.Step(1.0 / 60, 6, 2)", "Box2D/examples/hello.py"),
+    Citation("sleeping", "on, the default", "b2BodyDef.allowSleep"),
+    Citation(
+        "friction",
+        "0.2, of a pair the root of the product; here 1",
+        "b2FixtureDef.friction, b2Contact.h",
+    ),
+    Citation(
+        "skin", "0.01 of a polygon, of which 0.005 is left alone", "b2_polygonRadius, b2_linearSlop"
+    ),
+    Citation("warm starting", "on, the default", "b2World.warmStarting"),
+    Citation(
+        "without effect",
+        "continuousPhysics on; b2_velocityThreshold 1 below which nothing bounces; no damping; "
+        "speeds up to b2_maxTranslation 2 a step",
+        "b2World, b2BodyDef, b2Settings.h",
+    ),
+    Citation("floor", "a kinematic body, by its linearVelocity", "examples/body_types.py"),
+)
+"""What its documentation sets, in pybox2d 2.3.10."""
+
+RECOMMENDED = (
+    Citation("iterations", "8 for velocity and 3 for position", "manual, Hello Box2D"),
+    Citation("step", "1/60 s; no smaller one for fewer iterations", "manual, Dynamics Module"),
+)
+"""What it recommends for accurate contact."""
+
+FACTORS = (
+    factor("geometry"),
+    Factor(
+        "iterations",
+        ("iterations", "sweeps"),
+        (
+            level("6", iterations=6),
+            level("100", iterations=100),
+            level("1000", iterations=1000),
+        ),
+    ),
+    factor("position_iterations", level("2", position_iterations=2)),
+    factor("units", level("5 a height", units=5.0), level("200 a height", units=200.0)),
+    factor("centred", name="origin"),
+    factor("skins_below"),
+    factor("continuous"),
+    factor("margin", level("1", margin=1.0), level("100", margin=100.0)),
+    ASLEEP,
+    moving_base("both", "velocity", "position"),
+)
+
+RULES = (
+    Rule(
+        "Count in units of length that fit, here 50 a height: polygons have a skin of 0.01 "
+        "units, and speed is cut to 2 units a step",
+        *(DEFAULT, "units", AS_BEST),
+        kept=True,
+    ),
+    Rule(
+        "Lower a floor by that skin, if bodies are to touch it where it is",
+        *(BEST, "skins below", BY_DEFAULT),
+    ),
+    Rule(
+        "Forbid sleep by `body.sleepingAllowed = False`: the world's own `doSleep` reads back what "
+        "was set and does nothing, and gravity that turns wakes nothing",
+        *SLEEP,
+    ),
+)
+
+NAIVE = Preset(
+    name="naive",
+    settings=Box2DSettings(),
+    step_s=LIBRARY_STEP_S,
+    documented=DOCUMENTED,
+    frame="world",
+    deviations=(Deviation.MIRROR, Deviation.PEAK),
+    own={"friction": 0.2},
+)
+
+ENGINE = Engine(
+    name="box2d",
+    title="Box2D",
+    library="Box2D",
+    packages=("Box2D",),
+    install="rocking[box2d]",
+    build=Box2DWorld,
+    abilities=(Ability.SEVERAL, Ability.STACKED),
+    presets=(
+        NAIVE,
+        NAIVE.at_rest(Deviation.MIRROR, Deviation.PEAK, Deviation.RECORD, Deviation.SLEEP),
+        NAIVE.recommended(
+            *RECOMMENDED,
+            deviations=(Deviation.MIRROR, Deviation.PEAK),
+            iterations=8,
+            position_iterations=3,
+        ),
+        Preset(
+            name="fixed",
+            settings=TUNED,
+            step=1e-3,
+            helped_by={Help.MARGIN: {"margin": None}},
+        ),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            stacked={"sweeps": 200.0},
+            builders={Ability.STACKED: Box2DStacks},
+            helped_by={
+                Help.STEPS: None,
+                Help.REFLECTION: {"reflection": False},
+                Help.MARGIN: {"margin": None},
+            },
+        ),
+    ),
+    geometries=("box", "corners"),
+    precision=Precision.SINGLE,
+    shortest_step=3e-6,
+    script=script,
+    factors=FACTORS,
+    rules=RULES,
+)
