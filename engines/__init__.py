@@ -29,8 +29,7 @@ It holds
   whose calls are noted (`engines.run.export`), so that a script says what a run does;
 - where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
   the bit what ``step`` and ``state`` give (`Scene.compiled`);
-- where it can hold what ``build`` does not, as bodies that rest on others, what builds that, a line
-  each in ``builders``, on which no row of another scene depends;
+- where it can hold several bodies, and bodies that rest on others, ``stacks``;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
   as its own documentation shows it, each setting with its source) to the best there is, what the
   studies try of its contact, and what its users should know first (`rules`), each with the variant
@@ -41,13 +40,12 @@ declaration; every study reads it, and none names an engine.
 """
 
 from engines.registry import ENGINES, core_engines, installed_engines
-from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Scene
+from engines.scene import ACCURACIES, FRAMES, Scene
 
 __all__ = [
     "ACCURACIES",
     "ENGINES",
     "FRAMES",
-    "GEOMETRIES",
     "Scene",
     "core_engines",
     "installed_engines",

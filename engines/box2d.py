@@ -19,7 +19,6 @@ from engines.declaration import (
     DEFAULT,
     SLEEP,
     Citation,
-    Deviation,
     Engine,
     Factor,
     Help,
@@ -33,7 +32,7 @@ from engines.declaration import (
 )
 from engines.parts import FLOOR_HEIGHTS, NO_JAM, Counted, fall, imported, iterations_for
 from engines.run.export import Notes, Script, scaled
-from engines.scene import BASE, Ability, Scene
+from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
 from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
 
@@ -415,7 +414,6 @@ NAIVE = Preset(
     step_s=LIBRARY_STEP_S,
     documented=DOCUMENTED,
     frame="world",
-    deviations=(Deviation.MIRROR, Deviation.PEAK),
     own={"friction": 0.2},
 )
 
@@ -426,13 +424,12 @@ ENGINE = Engine(
     packages=("Box2D",),
     install="rocking[box2d]",
     build=Box2DWorld,
-    abilities=(Ability.SEVERAL, Ability.STACKED),
+    stacks=True,
     presets=(
         NAIVE,
-        NAIVE.at_rest(Deviation.MIRROR, Deviation.PEAK, Deviation.RECORD, Deviation.SLEEP),
+        NAIVE.at_rest(),
         NAIVE.recommended(
             *RECOMMENDED,
-            deviations=(Deviation.MIRROR, Deviation.PEAK),
             iterations=8,
             position_iterations=3,
         ),
@@ -447,7 +444,7 @@ ENGINE = Engine(
             settings=LANDING,
             stepping=Stepping.LANDING,
             stacked={"sweeps": 200.0},
-            builders={Ability.STACKED: Box2DStacks},
+            stacks=Box2DStacks,
             helped_by={
                 Help.STEPS: None,
                 Help.REFLECTION: {"reflection": False},
@@ -455,7 +452,6 @@ ENGINE = Engine(
             },
         ),
     ),
-    geometries=("box", "corners"),
     precision=Precision.SINGLE,
     shortest_step=3e-6,
     script=script,

@@ -3,12 +3,11 @@
 import enum
 import importlib.util
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
-from importlib.metadata import Distribution
 from typing import Any, NamedTuple
 
-from engines.scene import ACCURACIES, FRAMES, GEOMETRIES, Ability, Scene, System
+from engines.scene import ACCURACIES, FRAMES, Scene
 from engines.settings import one_of
 from engines.world import REST_FACTOR, ROUNDINGS, Resolution, Script, World
 
@@ -22,15 +21,6 @@ class Help(enum.Enum):
     MARGIN = "the pivot kept in contact over the gap by which it rises in a step"
     PRELOAD = "the pivot pressed by its load from the start of a step"
     POSITIONS = "positions moved by the adapter, from the engine's velocities"
-
-
-class Deviation(enum.Enum):
-    """What an engine gets wrong with its defaults, without a word."""
-
-    MIRROR = "shaken the other way, the block does not answer the other way"
-    PEAK = "on one of the paper's histories another outcome, or a peak off by more than 0.3"
-    SLEEP = "a block that stood still for two seconds sleeps on while it is shaken"
-    RECORD = "under an accelerogram the rotation is off by more than 0.6 of its peak"
 
 
 class Citation(NamedTuple):
@@ -201,7 +191,7 @@ UNMOVED_BASE = (BEST, MOVING_BASE, BY_POSITION)
 """What a rule about such a base is shown by."""
 
 
-Builder = Callable[[Any, Any, float], Any]
+Builder = Callable[[Scene, Any, float], World]
 """``(scene, settings, dt_s)`` -> the built scene, in the ordinary steps dt_s [s]."""
 
 
@@ -260,20 +250,16 @@ class Preset:
         Of "naive" and "recommended": what its documentation sets, and where it says so.
     frame : str
         One of `FRAMES`, where a scene does not say.
-    contact_s : float
-        Time [s] of a contact that does not follow the step; nan where it does, or has none.
     accuracy_knob : pair or None
         Name and values, from cheap to dear, of the setting that trades time for accuracy where
         that is not the step.
     helped_by : mapping
         What helps -> the settings that leave it out; None where it is the preset itself.
-    deviations : tuple of Deviation
-        What the library's defaults get wrong; no tuned preset may miss anything.
     stacked : mapping or None
         Settings in place of some of these where bodies rest on others; None where it cannot be used
         for such a scene.
-    builders : mapping
-        In place of some of the engine's.
+    stacks : callable or None
+        Builds such a scene, in place of the engine's build.
     own : mapping
         Of "naive", settings that are not the library's own -> what the library has by itself.
     """
@@ -286,12 +272,10 @@ class Preset:
     step_s: float = math.nan
     documented: tuple[Citation, ...] = ()
     frame: str = "base"
-    contact_s: float = math.nan
     accuracy_knob: tuple[str, tuple[float, ...]] | None = None
     helped_by: Mapping[Help, Mapping[str, Any] | None] = field(default_factory=dict)
-    deviations: tuple[Deviation, ...] = ()
     stacked: Mapping[str, Any] | None = field(default_factory=dict)
-    builders: Mapping[Ability, Builder] = field(default_factory=dict)
+    stacks: Builder | None = None
     own: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -303,45 +287,22 @@ class Preset:
                 "equal steps need one of them, other steps none"
             )
 
-    def posed(self, scene: Scene) -> Scene:
-        """Return a scene that says where the base moves."""
-        return scene if scene.frame else replace(scene, frame=self.frame)
-
-    def at_rest(self, *deviations: Deviation) -> "Preset":
-        """Return the same on a base at rest, of which no documentation speaks; see `deviations`."""
-        title = TITLES[AT_REST]
-        return replace(
-            self, name=AT_REST, title=title, deviations=deviations, frame="base", documented=()
-        )
+    def at_rest(self) -> "Preset":
+        """Return the same on a base at rest, of which no documentation speaks."""
+        return replace(self, name=AT_REST, title="", frame="base", documented=())
 
     def recommended(
-        self,
-        *documented: Citation,
-        deviations: tuple[Deviation, ...] = (),
-        step_s: float | None = None,
-        **settings: Any,
+        self, *documented: Citation, step_s: float | None = None, **settings: Any
     ) -> "Preset":
-        """Return the same with what is recommended, and where it is; see `deviations`."""
+        """Return the same with what is recommended, and where it is."""
         return replace(
             self,
             name=RECOMMENDED,
-            title=TITLES[RECOMMENDED],
+            title="",
             settings=replace(self.settings, **settings),
             step_s=step_s or self.step_s,
             documented=documented,
-            deviations=deviations,
         )
-
-    def chosen(self, scene: Scene) -> Any:
-        """Return its settings for a scene, with the scene's own in their place.
-
-        Raises
-        ------
-        ValueError
-            If a setting of the scene is not one of the engine's.
-        """
-        stacked = (Ability.STACKED in scene.layout.asks and self.stacked) or {}
-        return scene.choose(replace(self.settings, **stacked))
 
     def takes(self, **settings: Any) -> bool:
         """Return whether its settings can be changed so."""
@@ -357,15 +318,6 @@ class Preset:
         Between two looks at the block, where the engine chooses its own steps.
         """
         return self.step if self.stepping is Stepping.FIXED else 1.0 / ACCURACIES[accuracy]
-
-    def ordinary_step_s(self, scene: Scene) -> float:
-        """Return the ordinary step [s] in a scene."""
-        p = scene.system.p
-        if scene.step is not None:
-            return scene.step / p
-        if self.stepping is not Stepping.FIXED:
-            return 1.0 / (ACCURACIES[scene.accuracy] * p)
-        return self.step / p if math.isnan(self.step_s) else self.step_s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -384,24 +336,16 @@ class Engine:
         What pip is told to install it.
     build : callable
         ``(scene, settings, dt_s) -> World``: builds a scene in the ordinary steps dt_s [s]. Only
-        this, and `builders`, may import the library, and only when called.
+        this, and a preset's `stacks`, may import the library, and only when called.
     presets : tuple of Preset
         From the library's own to the best there is, for which the engine's plain name stands.
     core : bool
         Whether the published studies ask it by default.
-    frames, geometries : tuple of str
-        Those of `FRAMES` and `GEOMETRIES` that it has.
-    abilities : tuple of Ability
-        What `build` can hold beyond one body.
-    builders : mapping
-        What else its adapter can hold -> what builds it, called as `build`: a `World`. No row of
-        another scene depends on it.
-    spatial : bool
-        Whether the block can leave the plane (setting "planar" put to False).
+    frames : tuple of str
+        Those of `FRAMES` that it has.
+    stacks : bool
+        Whether it can hold several bodies, and bodies that rest on others.
     precision : Precision
-    nuisance_sensitivity : float
-        Part by which the peak of its best preset was seen to move when what should not matter was
-        changed a little: the radius of its corners, the steps over which it corrects a depth.
     shortest_step : float
         p dt below which a step has no effect that is resolved.
     rest_factor : float
@@ -410,17 +354,10 @@ class Engine:
     script : callable or None
         ``(scene, settings, dt_s) -> Script``: a scene in the library's own words, in the ordinary
         steps dt_s [s]. Without it an engine can be neither exported nor quoted.
-    spring : callable or None
-        ``(time, step) -> settings`` of a contact that holds the block's mass m by a spring of
-        m/time^2 with critical damping, both arguments in units of 1/p.
     factors : tuple of Factor
         What its contact can be set to.
     rules : tuple of Rule
         What its users should know first.
-    remedy : mapping
-        The setting of its solver that is worth a try where a tuned preset fails.
-    own_step : str
-        "module:function" that does nothing but the engine's own step.
     compiles : bool
         Whether its library, or its adapter's loop, is compiled when it is first used on a machine:
         that is then done once before a study's cases, and their time limit does not count it.
@@ -431,24 +368,17 @@ class Engine:
     library: str
     packages: tuple[str, ...]
     install: str
-    build: Callable[[Scene, Any, float], World]
+    build: Builder
     presets: tuple[Preset, ...]
     core: bool = False
     frames: tuple[str, ...] = FRAMES
-    geometries: tuple[str, ...] = ("box",)
-    abilities: tuple[Ability, ...] = ()
-    builders: Mapping[Ability, Builder] = field(default_factory=dict)
-    spatial: bool = False
+    stacks: bool = False
     precision: Precision = Precision.DOUBLE
-    nuisance_sensitivity: float = 0.0
     shortest_step: float = 1e-12
     rest_factor: float = REST_FACTOR
     script: Callable[[Scene, Any, float], Script] | None = None
-    spring: Callable[[float, float], Mapping[str, Any]] | None = None
     factors: tuple[Factor, ...] = ()
     rules: tuple[Rule, ...] = ()
-    remedy: Mapping[str, Any] = field(default_factory=dict)
-    own_step: str = ""
     compiles: bool = False
 
     @property
@@ -456,76 +386,97 @@ class Engine:
         """The preset for which the plain name stands."""
         return self.presets[-1]
 
-    def preset(self, name: str | None) -> Preset:
-        """Return the preset of a name, the best for None.
+    @property
+    def installed(self) -> bool:
+        """Whether its library is there."""
+        return importlib.util.find_spec(self.library) is not None
 
-        Raises
-        ------
-        ValueError
-            If there is none.
-        """
+    def preset(self, name: str | None) -> Preset:
+        """Return the preset of a name, the best for None; ValueError if there is none."""
         if name is None:
             return self.best
         one_of(f"preset of {self.name}", name, [preset.name for preset in self.presets])
         return next(preset for preset in self.presets if preset.name == name)
 
-    @property
-    def most_friction(self) -> float:
-        """The largest coefficient of friction that it takes."""
-        items = fields(self.best.settings)
-        bounds = next(item.metadata for item in items if item.name == "friction")
-        return float(bounds["allowed"].most) if "allowed" in bounds else math.inf
-
-    def resolution(self, block: System) -> Resolution:
-        """Return what its numbers tell apart about a block."""
-        part = ROUNDINGS * self.precision.value
-        return Resolution(part * block.height, self.shortest_step / block.p, part, self.rest_factor)
-
-    @property
-    def installed(self) -> bool:
-        """Whether its library is there."""
-        if "." in self.library:  # to look for a part of a package would import the package
-            return next(iter(Distribution.discover(name=self.packages[0])), None) is not None
-        return importlib.util.find_spec(self.library) is not None
-
-    def used_for(self, scene: Scene) -> Preset:
-        """Return the preset that a scene names, or else the best that can be used for it.
+    def use(self, scene: Scene) -> "Use":
+        """Return how it is used for a scene: in the preset that it names, or the best that can be.
 
         Raises
         ------
         ValueError
-            If there is none of that name.
+            If there is no such preset, or a setting of the scene is not one of the engine's.
         """
-        if scene.preset is not None:
-            return self.preset(scene.preset)
-        fit = [preset for preset in self.presets if not self.lacks(scene, preset)]
-        return fit[-1] if fit else self.best
+        presets = self.presets[::-1] if scene.preset is None else (self.preset(scene.preset),)
+        preset = next((each for each in presets if not self._lacks(scene, each)), presets[0])
+        names = [item.name for item in fields(preset.settings)]
+        for name in scene.settings:
+            one_of("setting", name, names)
+        stacked = (scene.stacked and preset.stacked) or {}
+        given = {} if scene.friction is None else {"friction": scene.friction}
+        if scene.step is not None:
+            dt_s = scene.step / scene.system.p
+        elif preset.stepping is not Stepping.FIXED:
+            dt_s = 1.0 / (ACCURACIES[scene.accuracy] * scene.system.p)
+        else:
+            dt_s = preset.step / scene.system.p if math.isnan(preset.step_s) else preset.step_s
+        return Use(
+            self,
+            preset,
+            scene if scene.frame else replace(scene, frame=preset.frame),
+            replace(preset.settings, **{**stacked, **scene.settings, **given}),
+            dt_s,
+            self._lacks(scene, preset),
+        )
 
-    @property
-    def holds(self) -> tuple[Ability, ...]:
-        """What its adapter can hold beyond one body."""
-        return (*self.abilities, *self.builders)
-
-    def builder(self, asks: Sequence[Ability], preset: Preset) -> Builder:
-        """Return what builds, with a preset, a scene that asks for some abilities."""
-        others = {**self.builders, **preset.builders}
-        return next((others[it] for it in reversed(asks) if it in others), self.build)
-
-    def lacks(self, scene: Scene, preset: Preset) -> str:
-        """Say what of a scene a preset of the engine cannot do, or return an empty string."""
-        wanted, asks = scene.settings.get("geometry"), scene.layout.asks
-        for asked in asks:
-            if asked not in self.holds:
-                return f"{self.title} is not built here for {asked.value}"
-        frame = preset.posed(scene).frame
+    def _lacks(self, scene: Scene, preset: Preset) -> str:
+        """Say what of a scene it cannot do with a preset, or return an empty string."""
+        if scene.stacked and not self.stacks:
+            return f"{self.title} is not built here for {STACKED}"
         if preset.stepping is Stepping.LANDING and not scene.layout.rocking:
             return f"nothing rocks here on whose impacts {self.name}:{preset.name} could land"
-        if Ability.STACKED in asks and preset.stacked is None:
-            return f"{self.name}:{preset.name} is not built here for {Ability.STACKED.value}"
-        if frame not in self.frames:
+        if scene.stacked and preset.stacked is None:
+            return f"{self.name}:{preset.name} is not built here for {STACKED}"
+        if (frame := scene.frame or preset.frame) not in self.frames:
             return f"{self.title} has no frame {frame!r}"
-        if wanted in GEOMETRIES and wanted not in self.geometries:
-            return f"{self.title} has no geometry {wanted!r}"
-        if scene.settings.get("planar") is False and not self.spatial:
-            return f"{self.title} knows the plane alone"
         return ""
+
+
+STACKED = "bodies that rest on other bodies"
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """How an engine is used for a scene: all that its declaration says of it, resolved once.
+
+    Attributes
+    ----------
+    engine : Engine
+    preset : Preset
+    scene : Scene
+        It says where the base moves.
+    settings : dataclass
+        The preset's, with the scene's own in their place.
+    dt_s : float
+        The ordinary step [s].
+    lacking : str
+        What of the scene the engine cannot do so; empty where it can all.
+    """
+
+    engine: Engine
+    preset: Preset
+    scene: Scene
+    settings: Any
+    dt_s: float
+    lacking: str = ""
+
+    @property
+    def build(self) -> Builder:
+        """What builds the scene."""
+        return (self.preset.stacks if self.scene.stacked else None) or self.engine.build
+
+    @property
+    def resolution(self) -> Resolution:
+        """What the engine's numbers tell apart about the system."""
+        system, part = self.scene.system, ROUNDINGS * self.engine.precision.value
+        shortest = self.engine.shortest_step / system.p
+        return Resolution(part * system.height, shortest, part, self.engine.rest_factor)

@@ -18,7 +18,6 @@ from engines.declaration import (
     OWN_STEP,
     OWN_STEPS,
     Citation,
-    Deviation,
     Engine,
     Factor,
     Help,
@@ -31,7 +30,7 @@ from engines.declaration import (
 )
 from engines.parts import FLOOR_HEIGHTS, NO_JAM, fall, imported, iterations_for
 from engines.run.export import Notes, Script, constant, scaled
-from engines.scene import BASE, Ability, Body, Scene
+from engines.scene import BASE, Body, Scene
 from engines.settings import check, disagreement, setting
 from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
 
@@ -112,7 +111,7 @@ class PymunkWorld:
         self._dt = self._under = self.lag_m = 0.0
         self.margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
         # free corners of bodies that rest on others must meet them together
-        self._together = settings.positions and Ability.STACKED in scene.layout.asks
+        self._together = settings.positions and scene.stacked
         self._iterations = iterations_for(scene, settings.iterations, settings.sweeps)
         self.space = self._new_space()
         self.base = self._pymunk.Body(body_type=self._pymunk.Body.KINEMATIC)
@@ -383,7 +382,6 @@ NAIVE = Preset(
     step_s=LIBRARY_STEP_S,
     documented=DOCUMENTED,
     frame="world",
-    deviations=(Deviation.MIRROR,),
     own={"friction": 0.0},
 )
 
@@ -394,13 +392,11 @@ ENGINE = Engine(
     packages=("pymunk",),
     install="rocking[pymunk]",
     build=PymunkWorld,
-    abilities=(Ability.SEVERAL, Ability.STACKED),
+    stacks=True,
     presets=(
         NAIVE,
-        NAIVE.at_rest(Deviation.MIRROR, Deviation.PEAK, Deviation.RECORD),
-        NAIVE.recommended(
-            *RECOMMENDED, deviations=(Deviation.MIRROR,), step_s=LIBRARY_STEP_S / 10.0, slop=1e-3
-        ),
+        NAIVE.at_rest(),
+        NAIVE.recommended(*RECOMMENDED, step_s=LIBRARY_STEP_S / 10.0, slop=1e-3),
         Preset(
             name="fixed",
             settings=TUNED,
@@ -420,7 +416,6 @@ ENGINE = Engine(
             },
         ),
     ),
-    geometries=("box", "corners"),
     script=script,
     factors=FACTORS,
     rules=RULES,

@@ -7,14 +7,13 @@ faces touch. A further system is one more function here, and one line of `LAYOUT
 import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
-from enum import Enum
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 from analytic.block import RigidBlock, Rocker, Upright
 from analytic.checks import finite, positive, sized
-from analytic.frame import MOST_COLUMNS, RockingFrame
+from analytic.frame import RockingFrame
 from analytic.motion import SEGMENT_COLUMNS, Motion
 from analytic.slide import SlidingBlock
 from engines.settings import one_of
@@ -34,13 +33,6 @@ SPACING = 2.0
 
 BEAM_DEPTH = 0.2
 """Depth of its beam, likewise."""
-
-
-class Ability(Enum):
-    """What a scene may ask of an engine beyond one body; the value is what a reader is told."""
-
-    SEVERAL = "several bodies on one base"
-    STACKED = "bodies that rest on other bodies"
 
 
 class Beginning(NamedTuple):
@@ -143,38 +135,8 @@ class Layout(NamedTuple):
         loads = [self.bodies[top.on].mass / n for top, n in zip(tops, shares, strict=True)]
         return sum(loads, self.bodies[contact.body].mass if contact.face == LOWER else 0.0)
 
-    @property
-    def asks(self) -> tuple[Ability, ...]:
-        """What an engine must be able to do for it, the most particular last."""
-        several = (Ability.SEVERAL,) if len(self.bodies) > 1 else ()
-        stacked = any(contact.on != BASE for contact in self.contacts)
-        return (*several, *((Ability.STACKED,) if stacked else ()))
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SideBySide:
-    """Equal blocks that stand apart on one base: each rocks as it would alone.
-
-    Parameters
-    ----------
-    block : RigidBlock
-    count : int, optional
-        How many, from 1 to 100.
-    """
-
-    block: RigidBlock
-    count: int = 2
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.count <= MOST_COLUMNS or self.count != int(self.count):
-            allowed = f"a whole number from 1 to {MOST_COLUMNS}"
-            raise ValueError(f"count is {self.count!r}; it must be {allowed}")
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.block, name)
-
-
-System = Rocker | SlidingBlock | SideBySide
+System = Rocker | SlidingBlock
 """What can be posed; its width, height, alpha, p and gravity are those of what rocks or slides."""
 
 
@@ -224,15 +186,6 @@ def one_block(system: Upright, density: float, depth: float | None, start: Start
     return Layout((block,), (Contact(0, LOWER, BASE),), 1)
 
 
-def side_by_side(system: SideBySide, density: float, depth: float | None, start: Start) -> Layout:
-    """Return equal blocks apart on the base, the first one at its middle."""
-    apart = 4.0 * system.height
-    homes = [apart * number for number in range(system.count)]
-    bodies = tuple(_standing(system, density, depth, start, home) for home in homes)
-    contacts = tuple(Contact(number, LOWER, BASE) for number in range(system.count))
-    return Layout(bodies, contacts, system.count)
-
-
 def frame(system: RockingFrame, density: float, depth: float | None, start: Start) -> Layout:
     """Return columns on the base and a beam on their tops, all of them about x = 0.
 
@@ -274,7 +227,6 @@ LAYOUTS: Mapping[type, Callable[[Any, float, float | None, Start], Layout]] = {
     RigidBlock: one_block,
     RockingFrame: frame,
     SlidingBlock: sliding,
-    SideBySide: side_by_side,
 }
 """Class of a system -> what makes its layout of it, a density [kg/m3], a depth [m] and a start."""
 
@@ -309,12 +261,6 @@ MOST_HALF_CYCLES = 10**6
 """Half cycles of which an engine's process holds the times in half a GB."""
 ACCURACIES = {"loose": 40, "standard": 200, "tight": 800}
 """Name of an accuracy -> ordinary steps in a time 1/p, where steps are not all equal."""
-
-GEOMETRIES = ("box", "corners", "hull")
-"""What touches the base: the whole block, small spheres at its corners, or the whole block as the
-convex hull of its corners."""
-
-SettingsT = TypeVar("SettingsT")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -451,27 +397,16 @@ class Scene:
         return self.layout.bodies
 
     @property
+    def stacked(self) -> bool:
+        """Whether bodies rest on others."""
+        return len(self.bodies) > 1
+
+    @property
     def side(self) -> float:
         """Corner about which what rocks turns at first: -1 or 1, or 0 if it is at rest."""
         theta, rate = self.start
         turns = self.layout.rocking and (theta or rate)
         return math.copysign(1.0, theta or rate) if turns else 0.0
-
-    def choose(self, settings: SettingsT) -> SettingsT:
-        """Return an engine's settings with this scene's own in their place.
-
-        Raises
-        ------
-        ValueError
-            If a setting is not one of the engine's.
-        """
-        names = [item.name for item in fields(settings)]  # type: ignore[arg-type]
-        for name in self.settings:
-            one_of("setting", name, names)
-        chosen = dict(self.settings)
-        if self.friction is not None:
-            chosen["friction"] = self.friction
-        return replace(settings, **chosen)  # type: ignore[type-var]
 
 
 def _moves(motion: Motion) -> bool:

@@ -102,7 +102,7 @@ def is_built_for(variant: Variant, case: Case | RandomCase) -> bool:
     """Return whether a variant's preset can hold a case: some are for one block alone."""
     asked = resolve(variant.source)
     scene = Scene(system=case.block, motion=case.motion, preset=asked.preset)
-    return not asked.declared.lacks(scene, asked.used)
+    return not asked.declared.use(scene).lacking
 
 
 def job_of(

@@ -11,7 +11,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from analytic import RigidBlock, RockingFrame, SlidingBlock
 from engines import ENGINES, Scene
-from engines.declaration import Engine, Preset, Stepping
+from engines.declaration import STACKED, Engine, Preset, Stepping
 from engines.run import ground
 from engines.run.slide import LEAST_SLIP, SLIP_RATE
 from engines.settings import perhaps
@@ -104,7 +104,7 @@ def command(
     else:
         print(f"largest rotation to expect: {found:.12g} of the critical one; exact {exact:.12g}")
     if preset is None and engine == asked.name:
-        best = asked.used_for(replace(scene, preset=None)).name
+        best = asked.use(replace(scene, preset=None)).preset.name
         others = "" if best == used.name else f"; in other commands {engine} is {engine}:{best}"
         print(f"preset: {used.name}, in equal steps{others}")
     return 0
@@ -135,19 +135,18 @@ def measure(job: Job) -> Row:
 
 def unwritten(engine: Engine, preset: Preset, scene: Scene) -> str:
     """Say what of a scene is not written out with a preset, or return an empty string."""
-    asks = scene.layout.asks
-    builder = inspect.unwrap(engine.builder(asks, preset))
-    if (lacking := engine.lacks(scene, preset)) or builder is engine.build:
-        return lacking
-    return f"{engine.title} is not built here for {asks[0].value}"
+    use = engine.use(replace(scene, preset=preset.name))
+    if use.lacking or inspect.unwrap(use.build) is engine.build:
+        return use.lacking
+    return f"{engine.title} is not built here for {STACKED}"
 
 
 def script_of(engine: Engine, scene: Scene) -> Script:
     """Return a scene, with the preset that it names, in the library's own words."""
     if engine.script is None:
         raise ValueError(f"{engine.title} writes no scripts")
-    preset = engine.used_for(scene)
-    return engine.script(preset.posed(scene), preset.chosen(scene), preset.ordinary_step_s(scene))
+    use = engine.use(scene)
+    return engine.script(use.scene, use.settings, use.dt_s)
 
 
 def files(engine: Engine, scene: Scene, expected: Any, exact: Any) -> dict[str, str]:
@@ -156,20 +155,20 @@ def files(engine: Engine, scene: Scene, expected: Any, exact: Any) -> dict[str, 
     What the script is to find, and what the exact solution does, is the largest rotation over the
     critical one, or the slips [m] where nothing rocks.
     """
-    preset, script = engine.used_for(scene), script_of(engine, scene)
+    use, script = engine.use(scene), script_of(engine, scene)
     environment = Environment(
         loader=PackageLoader("studies", "."), undefined=StrictUndefined, trim_blocks=True,
         keep_trailing_newline=True,
     )  # fmt: skip
     block = environment.get_template("export.py.jinja").render(
         engine=engine,
-        preset=preset,
+        preset=use.preset,
         scene=scene,
         system=scene.system,
         title=TITLES[type(scene.system)],
         script=script,
-        moves=preset.posed(scene).frame == "world",
-        dt_s=preset.ordinary_step_s(scene),
+        moves=use.scene.frame == "world",
+        dt_s=use.dt_s,
         expected=expected,
         exact=exact,
         version=project_version(),

@@ -221,19 +221,19 @@ def exact_on_its_floor(source: Source, block: RigidBlock, motion: Motion) -> Res
     It is that to the second differences of the floor's places, joined by straight lines; a floor
     that says nowhere where it is, is where it should be.
     """
-    declared, used = source.declared, source.used
-    scene = used.posed(Scene(system=block, motion=motion, preset=used.name, compiled=False))
-    world, dt_s = build(declared, scene), used.ordinary_step_s(scene)
+    scene = Scene(system=block, motion=motion, preset=source.preset, compiled=False)
+    use = source.declared.use(scene)
+    world, stepping = build(use), use.preset.stepping
     try:
         if not hasattr(world, "base_x_m"):
             return simulate(block, motion)
-        monitor = Monitor(scene, dt_s, used.stepping, world.moment, declared.resolution(block))
-        walk, places = Stepper(monitor, world, used.stepping), [0.0, 0.0]
+        monitor = Monitor(use.scene, use.dt_s, stepping, world.moment, use.resolution)
+        walk, places = Stepper(monitor, world, stepping), [0.0, 0.0]
         while walk.go(1):
             places.append(float(world.base_x_m))
     finally:
         world.close()
-    return simulate(block, Record(samples=np.diff(places, 2) / dt_s**2, dt=dt_s))
+    return simulate(block, Record(samples=np.diff(places, 2) / use.dt_s**2, dt=use.dt_s))
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:

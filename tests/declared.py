@@ -1,10 +1,13 @@
 """What tests ask of an engine, by what it declares."""
 
 from contextlib import contextmanager
+from enum import Enum
 
 import pytest
 
 from engines import ENGINES, registry
+from engines.registry import find
+from engines.run.run import run as run_use
 from engines.world import ROUNDINGS
 from studies.sources import registry as sources
 
@@ -12,9 +15,46 @@ STEPS_ADD_UP = 1e4
 """Steps over whose roundings the errors of two runs may add up that should be equal."""
 
 
+class Miss(Enum):
+    """What an engine gets wrong with its defaults, without a word."""
+
+    MIRROR = "shaken the other way, the block does not answer the other way"
+    PEAK = "on one of the paper's histories another outcome, or a peak off by more than 0.3"
+    SLEEP = "a block that stood still for two seconds sleeps on while it is shaken"
+    RECORD = "under an accelerogram the rotation is off by more than 0.6 of its peak"
+
+
+MISSED = {
+    Miss.MIRROR: (
+        *("pymunk:naive", "pymunk:naive-base-at-rest", "pymunk:recommended"),
+        *("box2d:naive", "box2d:naive-base-at-rest", "box2d:recommended"),
+        *("rapier:naive", "rapier:naive-base-at-rest", "rapier:recommended"),
+        *("physx:naive", "physx:naive-base-at-rest", "physx:recommended"),
+    ),
+    Miss.PEAK: (
+        *("mujoco:recommended", "pymunk:naive-base-at-rest", "drake:naive-base-at-rest"),
+        *("box2d:naive", "box2d:naive-base-at-rest", "box2d:recommended", "rapier:naive"),
+    ),
+    Miss.RECORD: (
+        *("pymunk:naive-base-at-rest", "box2d:naive-base-at-rest", "rapier:naive-base-at-rest"),
+    ),
+    Miss.SLEEP: ("box2d:naive-base-at-rest", "dart:naive", "rapier:naive-base-at-rest"),
+}
+"""What is missed -> the sources that miss it: all are presets of the libraries' own."""
+
+NUISANCE = {"rapier": 6e-3, "drake": 2e-4, "physx": 6e-3}
+"""Engine -> part by which the peak of its best preset was seen to move when what should not matter
+was changed a little: the radius of its corners, the steps over which it corrects a depth."""
+
+
+def run(engine, scene):
+    """Return what an engine, by its name or declaration, makes of a scene."""
+    return run_use(find(engine).use(scene))
+
+
 def held_to(miss, engine, preset):
-    """Return the marks of a test that must fail where a preset declares to miss what it asks."""
-    missed = miss in ENGINES[engine].preset(preset).deviations
+    """Return the marks of a test that must fail where a preset is known to miss what it asks."""
+    missed = f"{engine}:{preset}" in MISSED[miss]
     return [pytest.mark.xfail(strict=True, reason=miss.value)] if missed else []
 
 

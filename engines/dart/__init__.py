@@ -11,8 +11,7 @@ from engines.dart.settings import (
     DartSettings,
 )
 from engines.dart.stacks import DartStacks
-from engines.declaration import Deviation, Engine, Help, Preset, Stepping
-from engines.scene import Ability
+from engines.declaration import Engine, Help, Preset, Stepping
 
 NAIVE = Preset(
     name="naive",
@@ -20,7 +19,6 @@ NAIVE = Preset(
     step_s=1e-3,
     documented=DOCUMENTED,
     frame="world",
-    deviations=(Deviation.SLEEP,),
 )
 
 ENGINE = Engine(
@@ -30,7 +28,7 @@ ENGINE = Engine(
     packages=("dartpy",),
     install="rocking[dart]",
     build=DartWorld,
-    abilities=(Ability.SEVERAL, Ability.STACKED),
+    stacks=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),
@@ -45,7 +43,7 @@ ENGINE = Engine(
             settings=LANDING,
             stepping=Stepping.LANDING,
             stacked={"margin": 30.0, "unit": 1e7},
-            builders={Ability.STACKED: DartStacks},
+            stacks=DartStacks,
             helped_by={
                 Help.STEPS: None,
                 Help.REFLECTION: {"reflection": False},
@@ -53,11 +51,8 @@ ENGINE = Engine(
             },
         ),
     ),
-    geometries=("box", "corners"),
-    spatial=True,
     rest_factor=1.0,
     script=script,
     factors=FACTORS,
     rules=RULES,
-    own_step="dartpy:simulation.World.step",
 )

@@ -1,6 +1,6 @@
 """Drake: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Deviation, Engine, Preset, Stepping
+from engines.declaration import Engine, Preset, Stepping
 from engines.drake.build import DrakeWorld
 from engines.drake.script import script
 from engines.drake.settings import (
@@ -12,7 +12,6 @@ from engines.drake.settings import (
     TUNED,
     DrakeSettings,
 )
-from engines.scene import Ability
 
 NAIVE = Preset(
     name="naive",
@@ -30,10 +29,10 @@ ENGINE = Engine(
     packages=("drake",),
     install="rocking[drake]",
     build=DrakeWorld,
-    abilities=(Ability.SEVERAL, Ability.STACKED),
+    stacks=True,
     presets=(
         NAIVE,
-        NAIVE.at_rest(Deviation.PEAK),
+        NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, solver="similar", geometry="corners", stiffness=0.0133),
         Preset(name="fixed", settings=TUNED, step=3e-4),
         Preset(
@@ -44,11 +43,7 @@ ENGINE = Engine(
             accuracy_knob=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 2e-9)),
         ),
     ),
-    geometries=("box", "corners"),
-    spatial=True,
-    nuisance_sensitivity=2e-4,
     script=script,
     factors=FACTORS,
     rules=RULES,
-    own_step="pydrake.systems.analysis:Simulator.AdvanceTo",
 )

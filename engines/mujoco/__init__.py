@@ -1,10 +1,9 @@
 """MuJoCo: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Deviation, Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, Stepping
 from engines.mujoco.build import LIBRARY_STEP_S, world_of
 from engines.mujoco.script import script
 from engines.mujoco.settings import (
-    DEFAULT_CONTACT_S,
     DOCUMENTED,
     FACTORS,
     LANDING,
@@ -13,10 +12,8 @@ from engines.mujoco.settings import (
     STACKED,
     TUNED,
     MujocoSettings,
-    spring,
 )
 from engines.mujoco.stacks import stacks_of
-from engines.scene import GEOMETRIES, Ability
 
 NAIVE = Preset(
     name="naive",
@@ -24,7 +21,6 @@ NAIVE = Preset(
     step_s=LIBRARY_STEP_S,
     documented=DOCUMENTED,
     frame="world",
-    contact_s=DEFAULT_CONTACT_S,
 )
 
 ENGINE = Engine(
@@ -34,13 +30,12 @@ ENGINE = Engine(
     packages=("mujoco",),
     install="rocking",
     build=world_of,
-    abilities=(Ability.SEVERAL, Ability.STACKED),
+    stacks=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),
         NAIVE.recommended(
             *RECOMMENDED,
-            deviations=(Deviation.PEAK,),  # its floor lags
             integrator="implicitfast",
             cone="elliptic",
             impratio=10.0,
@@ -53,7 +48,7 @@ ENGINE = Engine(
             settings=TUNED,
             step=2.5e-4,
             stacked=STACKED,
-            builders={Ability.STACKED: stacks_of},
+            stacks=stacks_of,
         ),
         Preset(
             name="landing",
@@ -69,13 +64,8 @@ ENGINE = Engine(
         ),
     ),
     core=True,
-    geometries=GEOMETRIES,
-    spatial=True,
     script=script,
-    spring=spring,
     factors=FACTORS,
     rules=RULES,
-    remedy={"impratio": 100.0},
-    own_step="mujoco:mj_step",
     compiles=True,
 )

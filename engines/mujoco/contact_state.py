@@ -8,7 +8,7 @@ from engines.mujoco.model import welded
 from engines.mujoco.settings import MujocoSettings
 from engines.parts.compiled import State, fill
 from engines.parts.reflection import Reflection, begin_reflection
-from engines.scene import Ability, Scene
+from engines.scene import Scene
 from engines.world import FloatArray, Pose
 
 UNSET, SCALED, DIRECT = range(3)
@@ -196,7 +196,7 @@ def begin_contact(
         pairs=pairs,
         corners=max(pairs // len(scene.layout.contacts) // 2, 1),
         single=s.geometry != "corners",
-        stacked=Ability.STACKED in scene.layout.asks,
+        stacked=scene.stacked,
         ordinary_squared=dt_s**2,
         impedance_squared=impedance**2,
     )

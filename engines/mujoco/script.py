@@ -6,7 +6,7 @@ from engines.mujoco.model import coordinates, stepped_xml, welded
 from engines.mujoco.settings import MujocoSettings, kept
 from engines.mujoco.stacks import softened
 from engines.parts.script import Script
-from engines.scene import Ability, Scene
+from engines.scene import Scene
 from engines.world import Moment
 
 MODEL = "block.xml"
@@ -51,7 +51,7 @@ def script(scene: Scene, s: MujocoSettings, dt_s: float) -> Script:
     s : MujocoSettings, of which impratio is kept to what the friction allows
     dt_s : float, the step [s], which stands in the model
     """
-    s = kept(scene, softened(scene, s) if Ability.STACKED in scene.layout.asks else s)
+    s = kept(scene, softened(scene, s) if scene.stacked else s)
     model = stepped_xml(scene, s, dt_s)
     lines = map(str.strip, model.splitlines())
     # the joint of a welded base is the last, a free one

@@ -14,7 +14,7 @@ from engines.declaration import (
     level,
     moving_base,
 )
-from engines.scene import GEOMETRIES, Scene
+from engines.scene import Scene
 from engines.settings import check, setting
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
@@ -86,7 +86,7 @@ class MujocoSettings:
         Press that corner from the start of a step by what its force yields, where `carry` is set.
     """
 
-    geometry: str = setting("box", names=GEOMETRIES)
+    geometry: str = setting("box", names=("box", "corners", "hull"))
     planar: bool = False
     friction: float = setting(1.0, least=0.0)
     corner_radius: float = setting(1e-7, above=0.0)
@@ -297,19 +297,3 @@ def kept(scene: Scene, s: MujocoSettings) -> MujocoSettings:
     if s.impratio is None or "impratio" in scene.settings:
         return s
     return replace(s, impratio=min(s.impratio, (s.friction / NARROWEST_CONE) ** 2))
-
-
-def spring(time: float, step: float) -> dict[str, float]:
-    """Return the settings of a contact with a time of its own; see `Engine.spring`.
-
-    Parameters
-    ----------
-    time, step : float, positive, the contact's time and the step, in units of 1/p
-
-    Returns
-    -------
-    dict
-        stiffness, k dt^2, and damping, b dt, of critical damping.
-    """
-    ratio = step / time
-    return {"stiffness": ratio**2, "damping": 2.0 * ratio}

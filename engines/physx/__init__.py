@@ -1,6 +1,6 @@
 """PhysX: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Deviation, Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Precision, Preset, Stepping
 from engines.physx.build import PhysxWorld, script
 from engines.physx.settings import (
     DOCUMENTED,
@@ -11,7 +11,6 @@ from engines.physx.settings import (
     TUNED,
     PhysxSettings,
 )
-from engines.scene import Ability
 
 NAIVE = Preset(
     name="naive",
@@ -19,7 +18,6 @@ NAIVE = Preset(
     step_s=0.01,
     documented=DOCUMENTED,
     frame="world",
-    deviations=(Deviation.MIRROR,),
     own={"friction": 0.3},
 )
 
@@ -30,13 +28,12 @@ ENGINE = Engine(
     packages=("sapien",),
     install="rocking[physx]",
     build=PhysxWorld,
-    abilities=(Ability.SEVERAL, Ability.STACKED),
+    stacks=True,
     presets=(
         NAIVE,
-        NAIVE.at_rest(Deviation.MIRROR),
+        NAIVE.at_rest(),
         NAIVE.recommended(
             *RECOMMENDED,
-            deviations=(Deviation.MIRROR,),
             step_s=1.0 / 120.0,
             tgs=True,
             iterations=64,
@@ -55,14 +52,9 @@ ENGINE = Engine(
             },
         ),
     ),
-    geometries=("box", "corners"),
-    spatial=True,
     precision=Precision.SINGLE,
-    nuisance_sensitivity=6e-3,
     shortest_step=3e-6,
     script=script,
     factors=FACTORS,
     rules=RULES,
-    remedy={"tgs": True},
-    own_step="sapien.physx:PhysxCpuSystem.step",
 )

@@ -13,9 +13,7 @@ from engines.pybullet.settings import (
     STACKED,
     TUNED,
     BulletSettings,
-    spring,
 )
-from engines.scene import GEOMETRIES, Ability
 
 NAIVE = Preset(
     name="naive",
@@ -33,7 +31,7 @@ ENGINE = Engine(
     packages=("pybullet",),
     install="rocking[pybullet]",
     build=BulletWorld,
-    abilities=(Ability.SEVERAL, Ability.STACKED),
+    stacks=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),
@@ -54,12 +52,7 @@ ENGINE = Engine(
         ),
     ),
     core=True,
-    geometries=GEOMETRIES,
-    spatial=True,
     script=script,
-    spring=spring,
     factors=FACTORS,
     rules=RULES,
-    remedy={"iterations": 10000},
-    own_step="pybullet:stepSimulation",
 )

@@ -17,7 +17,7 @@ from engines.declaration import (
     moving_base,
 )
 from engines.parts import iterations_for
-from engines.scene import GEOMETRIES, Scene
+from engines.scene import Scene
 from engines.settings import check, setting
 
 LIBRARY_STEP_S = 1.0 / 240.0
@@ -105,7 +105,7 @@ class BulletSettings:
         Of a yielding contact, over m p^2 and m p; both or neither.
     """
 
-    geometry: str = setting("box", names=GEOMETRIES)
+    geometry: str = setting("box", names=("box", "corners", "hull"))
     planar: bool = False
     multibody: bool = True
     friction: float = setting(1.0, least=0.0, most=LARGEST_FRICTION)
@@ -302,19 +302,3 @@ RULES = (
     ),
 )
 """What its users should know first."""
-
-
-def spring(time: float, step: float) -> dict[str, float]:
-    """Return the settings of a contact with a time of its own; see `Engine.spring`.
-
-    Parameters
-    ----------
-    time : float, positive, the contact's time in units of 1/p
-    step : float, which such a contact does not depend on
-
-    Returns
-    -------
-    dict
-        contact_stiffness over m p^2, and contact_damping over m p, of critical damping.
-    """
-    return {"contact_stiffness": time**-2, "contact_damping": 2.0 / time}

@@ -1,6 +1,6 @@
 """Rapier: what it can do, how it is used, what its users should know first."""
 
-from engines.declaration import Deviation, Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Precision, Preset, Stepping
 from engines.rapier.build import RapierWorld, script
 from engines.rapier.settings import (
     DOCUMENTED,
@@ -11,7 +11,6 @@ from engines.rapier.settings import (
     TUNED,
     RapierSettings,
 )
-from engines.scene import Ability
 
 NAIVE = Preset(
     name="naive",
@@ -19,7 +18,6 @@ NAIVE = Preset(
     step_s=1.0 / 60.0,
     documented=DOCUMENTED,
     frame="world",
-    deviations=(Deviation.MIRROR, Deviation.PEAK),
     own={"friction": 0.5},
 )
 
@@ -30,13 +28,12 @@ ENGINE = Engine(
     packages=("rapier3d",),
     install="rocking[rapier]",
     build=RapierWorld,
-    abilities=(Ability.SEVERAL, Ability.STACKED),
+    stacks=True,
     presets=(
         NAIVE,
-        NAIVE.at_rest(Deviation.MIRROR, Deviation.RECORD, Deviation.SLEEP),
+        NAIVE.at_rest(),
         NAIVE.recommended(
             *RECOMMENDED,
-            deviations=(Deviation.MIRROR,),
             step_s=1.0 / 120.0,
             substeps=8,
             coulomb=True,
@@ -53,14 +50,9 @@ ENGINE = Engine(
             },
         ),
     ),
-    geometries=("box", "corners"),
-    spatial=True,
     precision=Precision.SINGLE,
-    nuisance_sensitivity=6e-3,
     shortest_step=3e-6,
     script=script,
     factors=FACTORS,
     rules=RULES,
-    remedy={"iterations": 1000},
-    own_step="rapier3d:PhysicsWorld.step",
 )

@@ -7,8 +7,7 @@ from time import perf_counter
 from typing import cast
 
 from analytic.response import Problem, Reason, Response
-from engines.declaration import Engine, Stepping
-from engines.registry import find
+from engines.declaration import Stepping, Use
 from engines.run.look import Monitor
 from engines.scene import Scene
 from engines.world import (
@@ -32,78 +31,51 @@ class NotAvailableError(Exception):
     """An engine that is not installed, or cannot do what is asked of it; one line says why."""
 
 
-def run(engine: str | Engine, scene: Scene) -> Response:
-    """Simulate a scene with an engine.
+def run(use: Use) -> Response:
+    """Simulate a scene as an engine is used for it.
 
     Parameters
     ----------
-    engine : str or Engine
-        A name in `ENGINES`, or a declaration.
-    scene : Scene
-        What to simulate, and how.
+    use : Use
+        What an engine's `use` of the scene returns.
 
     Returns
     -------
     Response
         A run that diverges, leaves the problem or takes too long is a failed response with its
         reason, as is one that the engine cannot do or whose library is not installed.
-
-    Raises
-    ------
-    ValueError
-        If the engine is unknown, or a preset or setting is not one of the engine's.
     """
     began = perf_counter()
-    asked = find(engine)
-    preset = asked.used_for(scene)
-    scene = preset.posed(scene)
+    engine, preset, scene = use.engine, use.preset, use.scene
     try:
-        world = build(asked, scene)
+        world = build(use)
     except NotAvailableError as error:
         return Response.failure(str(error), reason=Reason.UNAVAILABLE)
     built = perf_counter()
     try:
-        response = simulate_world(
-            world,
-            scene,
-            preset.ordinary_step_s(scene),
-            preset.stepping,
-            asked.resolution(scene.system),
-        )
+        response = simulate_world(world, scene, use.dt_s, preset.stepping, use.resolution)
     finally:
         world.close()
-    said = [] if scene.preset or preset is asked.best else [f"as {asked.name}:{preset.name}"]
+    said = [] if scene.preset or preset is engine.best else [f"as {engine.name}:{preset.name}"]
     message = "; ".join(filter(None, (*said, response.message)))
     return replace(response, setup_s=built - began, message=message)
 
 
-def build(engine: Engine, scene: Scene) -> World:
-    """Build a scene with an engine, in the preset and the settings that the scene names.
-
-    Parameters
-    ----------
-    engine : Engine
-    scene : Scene
+def build(use: Use) -> World:
+    """Build a scene as an engine is used for it.
 
     Raises
     ------
     NotAvailableError
         If the engine cannot do what the scene asks for, or its library is not installed.
-    ValueError
-        If a preset or setting is not one of the engine's.
     """
-    preset = engine.used_for(scene)
-    lacking = engine.lacks(scene, preset)
-    if lacking:
-        raise NotAvailableError(f"not available: {lacking}")
-    settings, scene = preset.chosen(scene), preset.posed(scene)
+    if use.lacking:
+        raise NotAvailableError(f"not available: {use.lacking}")
     try:
-        build_it = engine.builder(scene.layout.asks, preset)
-        world: World = build_it(scene, settings, preset.ordinary_step_s(scene))
+        return use.build(use.scene, use.settings, use.dt_s)
     except ImportError as error:
-        words = f"not available: {error}; pip install '{engine.install}'"
+        words = f"not available: {error}; pip install '{use.engine.install}'"
         raise NotAvailableError(words) from error
-    return world
 
 
 def simulate_world(

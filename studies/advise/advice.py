@@ -360,7 +360,8 @@ def in_library_words(line: pd.Series[Any], block: RigidBlock, friction: float, v
     engine, preset = ENGINES[line["engine"]], preset_of(line)
     motion, options = SinePulse(amplitude=1.0, omega=1.0), options_at(preset, value)
     scene = scene_of(block, motion, preset.name, friction=friction, **options)
-    dt_s, chosen = preset.ordinary_step_s(scene), scene.choose(preset.settings)
+    use = engine.use(scene)
+    dt_s, chosen = use.dt_s, use.settings
     if engine.script is not None and engine.installed:
         lines = list(engine.script(scene, chosen, dt_s).settings)
     else:

@@ -91,7 +91,7 @@ def find(
     rows: list[Row] = []
     for engine in [name for name in engines if name in set(table["engine"])]:
         mine, at_own, ways = (each[each["engine"] == engine] for each in (table, own, bounces))
-        dt = dt_s or ENGINES[engine].preset(DEFAULT).ordinary_step_s(_scene(block, {}))
+        dt = dt_s or ENGINES[engine].use(_scene(block, {})).dt_s
         changes = partial(patch, block, engine, friction=friction)
         found = {each: _measured(mine, at_own, each.column, dt, changes) for each in MEASURED}
         found |= {UNMOVED: _unmoved(mine, engine), HULL: _hull(mine, engine)}
@@ -235,13 +235,13 @@ def patch(
     Of each place the name of the file, lines that stay, those that go and those that come; empty
     for an engine that writes no scripts.
     """
-    script, usual = ENGINES[engine].script, ENGINES[engine].preset(DEFAULT)
+    script = ENGINES[engine].script
     if script is None or not ENGINES[engine].installed:
         return ""
     known = {(each.preset, each.factor, each.level): each.settings for each in variants(engine)}
     changed = known[DEFAULT, factor, level]
-    scenes = [usual.posed(_scene(block, given, friction)) for given in ({}, changed)]
-    before, after = (_files(script(each, usual.chosen(each), dt_s)) for each in scenes)
+    uses = [ENGINES[engine].use(_scene(block, given, friction)) for given in ({}, changed)]
+    before, after = (_files(script(each.scene, each.settings, dt_s)) for each in uses)
     return "\n".join(line for name in after for line in _places(name, before[name], after[name]))
 
 

@@ -1,7 +1,7 @@
 """Extreme cases: each takes one thing far beyond where anybody would tune a method."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
@@ -10,8 +10,27 @@ from analytic import simulate
 from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome
+from engines.declaration import UNTUNED
 from studies.cases.paper import free_rocking_window
 from studies.sources.registry import Source, resolve
+
+SPRINGS: Mapping[str, Callable[[float, float], Mapping[str, float]]] = {
+    "mujoco": lambda time, step: {
+        "stiffness": (step / time) ** 2,
+        "damping": 2.0 * (step / time),
+    },
+    "pybullet": lambda time, step: {
+        "contact_stiffness": time**-2,
+        "contact_damping": 2.0 / time,
+    },
+}
+"""Engine -> its settings of a critically damped contact of a time, which may depend on the step."""
+
+WITH_A_TIME = {("mujoco", preset) for preset in UNTUNED}
+"""Engines and presets whose contact has a time of its own."""
+
+MOST_FRICTION = {"pybullet": 10.0}
+"""Engine -> the largest coefficient of friction that it takes, where that is bounded."""
 
 EDGE = 1e-6
 """Relative distance of an amplitude from the onset, or from the overturning boundary."""
@@ -92,7 +111,7 @@ class Extreme:
         if self.density != 1000.0:
             options["density"] = self.density
         if self.friction is not None:
-            options["friction"] = min(self.friction, asked.declared.most_friction)
+            options["friction"] = min(self.friction, MOST_FRICTION.get(asked.engine, math.inf))
         if self.contact is not None:
             step = asked.used.ordinary_step()
             options["settings"] = contact_settings(source, self.contact, step)
@@ -101,15 +120,15 @@ class Extreme:
 
 def takes_spring(source: Source) -> bool:
     """Say whether an engine's contact can be given a time of its own; some have one already."""
-    return source.declared.spring is not None and math.isnan(source.used.contact_s)
+    return source.engine in SPRINGS and (source.engine, source.preset) not in WITH_A_TIME
 
 
-def contact_settings(source: str, time: float, step: float) -> Mapping[str, Any]:
+def contact_settings(source: str, time: float, step: float) -> Mapping[str, float]:
     """Return an engine's settings of a contact with a time of its own; both times are over 1/p.
 
     ValueError if the engine has no such contact.
     """
-    spring = resolve(source).declared.spring
+    spring = SPRINGS.get(resolve(source).engine)
     if spring is None:
         raise ValueError(f"{source} has no contact with a time of its own")
     return spring(time, step)

@@ -22,7 +22,6 @@ import pandas as pd
 
 from analytic import peak_ratios, simulate
 from analytic.response import Outcome, Response
-from engines import ENGINES
 from engines.declaration import Engine
 from engines.run.run import build
 from studies.cases.paper import HISTORIES, SWEEPS, free_rocking_window, sweep_cases
@@ -90,16 +89,27 @@ def share(job: Job) -> Row:
         return response
 
     engine_s = math.nan
-    if job.asked.declared.own_step:
+    if job.asked.engine in OWN_STEP:
         least, _ = best_of(clocked, job.labels["budget_s"])
         engine_s = max(own[least.wall_s] / least.steps, 0.0)
     return {**summary(whole), "step_s": whole.wall_s / whole.steps, "engine_s": engine_s}
 
 
+OWN_STEP = {
+    "rapier": "rapier3d:PhysicsWorld.step",
+    "mujoco": "mujoco:mj_step",
+    "drake": "pydrake.systems.analysis:Simulator.AdvanceTo",
+    "dart": "dartpy:simulation.World.step",
+    "physx": "sapien.physx:PhysxCpuSystem.step",
+    "pybullet": "pybullet:stepSimulation",
+}
+"""Engine -> the function of its library that does nothing but its own step."""
+
+
 @contextmanager
 def clock(engine: str) -> Iterator[list[float]]:
     """Put a clock around an engine's own step while the context lasts; yield its times [s]."""
-    place, _, name = ENGINES[engine].own_step.replace(":", ".").rpartition(".")
+    place, _, name = OWN_STEP[engine].replace(":", ".").rpartition(".")
     owner: Any = resolve_name(place)
     step, spent = getattr(owner, name), []
 
@@ -165,9 +175,9 @@ def grown(job: Job) -> float:
         return math.nan
     observed = {"duration": case.duration, "times": case.times}
     scene = scene_of(case.system, case.motion, job.asked.preset, **observed, **job.options)
-    worlds, pages = [build(job.asked.declared, scene)], []
+    worlds, pages = [build(job.asked.declared.use(scene))], []
     for count in (0, 20):
-        worlds += [build(job.asked.declared, scene) for _ in range(count)]
+        worlds += [build(job.asked.declared.use(scene)) for _ in range(count)]
         pages.append(int(status.read_text().split()[1]))
     for world in worlds:
         world.close()

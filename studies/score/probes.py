@@ -54,7 +54,7 @@ def world_of(source: Source, step: float, start: tuple[float, float] = (0.0, 0.0
     """Build the block, on a base that is not moved, in steps of p dt."""
     frame = "base" if "base" in source.declared.frames else None  # a base that moves is pulled, too
     scene = scene_of(BLOCK, UNFELT, source.preset, step=step, frame=frame, start=start)
-    return cast(SteppedWorld, build(source.declared, scene))
+    return cast(SteppedWorld, build(source.declared.use(scene)))
 
 
 def take(

@@ -17,7 +17,7 @@ from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
 from engines.parts.compiled import interpreted_first
 from engines.registry import announce as announce_engine
-from engines.registry import named
+from engines.registry import find, named
 from engines.scene import Scene, System
 from engines.settings import one_of, perhaps
 from studies.sources.scipy_peers import solve_ivp_response
@@ -72,7 +72,7 @@ class Source:
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
         if getattr(self.call, "func", None) is run_engine:
             asked = {**options, "duration": duration, "times": times}
-            self.used.chosen(scene_of(block, motion, self.preset, **asked))
+            self.declared.use(scene_of(block, motion, self.preset, **asked))
         elif options:
             taken = inspect.signature(self.call).parameters
             if all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
@@ -116,7 +116,7 @@ def run_engine(
     from engines.run.run import run
 
     scene = scene_of(block, motion, preset, **options)
-    return interpreted_first(partial(run, engine, scene))
+    return interpreted_first(partial(run, find(engine).use(scene)))
 
 
 def scene_of(

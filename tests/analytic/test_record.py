@@ -6,13 +6,13 @@ import pickle
 
 import numpy as np
 import pytest
-from declared import equal_to, held_to
+from declared import Miss, equal_to, held_to
 from given import BLOCK, ONSET, noise, onset_of
 from independent import history_under_samples
 
 from analytic import MODELS, Outcome, Record, RigidBlock, SinePulse, integrate, simulate
 from engines import ENGINES, installed_engines
-from engines.declaration import UNTUNED, Deviation
+from engines.declaration import UNTUNED
 from studies import respond
 from studies.kit.jobs import Job, Question
 from studies.sources.registry import SOURCES
@@ -160,7 +160,7 @@ DRAGGED = "pybullet:naive"
 def missing(name):
     """Return the marks of a source that is declared to miss a record."""
     engine, _, preset = name.partition(":")
-    return held_to(Deviation.RECORD, engine, preset) if preset else []
+    return held_to(Miss.RECORD, engine, preset) if preset else []
 
 
 def band(name):

@@ -108,7 +108,7 @@ class SelfSteppingWorld(KnownWorld):
 def watched(world, posed, stepping, **declared):
     """Return what is seen of a world, in steps that a scene is given, land or are its own."""
     dt_s = (posed.step or 1.0 / ACCURACIES[posed.accuracy]) / posed.system.p
-    resolution = replace(ENGINES["mujoco"], **declared).resolution(posed.system)
+    resolution = replace(ENGINES["mujoco"], **declared).use(posed).resolution
     return simulate_world(world, posed, dt_s, stepping, resolution)
 
 

@@ -7,6 +7,7 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
+from declared import run
 from given import BLOCK, all_but_times, pulse
 from uses import rocked, scene
 
@@ -14,7 +15,7 @@ from analytic.block import RigidBlock
 from engines import ENGINES
 from engines.pybullet import build as bullet
 from engines.pybullet.settings import FACTORS
-from engines.run.run import build, run, simulate_world
+from engines.run.run import build, simulate_world
 from engines.world import ContactPhase
 
 p = pytest.importorskip("pybullet")
@@ -49,8 +50,8 @@ def test_worlds_at_once_keep_their_own_gaps():
     """The library holds that up to which contacts are kept for the whole process, and looks at it
     when two bodies meet first: on a plane, while a scene is built."""
     engine, alone, asked = ENGINES["pybullet"], answer(1), apart(1)
-    world, other = build(engine, asked), build(engine, replace(asked, preset="naive"))
-    dt_s, resolution = engine.best.ordinary_step_s(asked), engine.resolution(asked.system)
+    world, other = build(engine.use(asked)), build(engine.use(replace(asked, preset="naive")))
+    dt_s, resolution = engine.use(asked).dt_s, engine.use(asked).resolution
     response = simulate_world(world, asked, dt_s, resolution=resolution)
     world.close()
     other.close()

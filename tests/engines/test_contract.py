@@ -6,16 +6,14 @@ from dataclasses import replace
 
 import pytest
 from commanding import python
+from declared import run
 from known import Bare, ScriptedWorld
 from uses import BLOCK, CORE, HERE, SHAKEN, every_use, held_frames, pulse, rocked, scene
 
 from analytic import RockingFrame, SlidingBlock
 from analytic.response import Outcome, Reason
 from engines import ENGINES
-from engines.declaration import UNTUNED
-from engines.registry import OWN
-from engines.run.run import build, run, simulate_world
-from engines.scene import Ability, SideBySide
+from engines.run.run import build, simulate_world
 from engines.world import Pose
 from studies.cases.variants import variants
 
@@ -34,7 +32,6 @@ def test_a_declaration_is_whole(name):
     assert replace(bare, **{name: getattr(naive.settings, name) for name in naive.own}) == (
         naive.settings
     )
-    assert not any(use.deviations for use in engine.presets if use.name not in UNTUNED)
     for preset in engine.presets:
         assert isinstance(preset.settings.friction, float)
         for left_out in filter(None, preset.helped_by.values()):
@@ -55,31 +52,11 @@ def test_a_library_that_is_missing_is_a_row_that_says_how_to_install_it(name):
     assert f"'nothing'; pip install '{ENGINES[name].install}'" in response.message
 
 
-ABLE = {
-    Ability.SEVERAL: (SideBySide(block=BLOCK), {*OWN}),
-    Ability.STACKED: (RockingFrame(**SIZE, load=1.0), {*OWN}),
-}
-"""Ability -> a system that asks for it, and which of the project's own engines have it."""
-
-
-@pytest.mark.parametrize("ability", ABLE)
-def test_who_can_hold_more_than_a_block_and_what_others_say(ability):
-    system, able = ABLE[ability]
-    assert {name for name in OWN if ability in ENGINES[name].holds} == able
-    for name, engine in ENGINES.items():
-        for preset in engine.presets:
-            if ability not in engine.holds:
-                found = rocked(name, system=system, preset=preset.name)
-                assert (found.outcome, found.reason) == (Outcome.FAILED, Reason.UNAVAILABLE)
-                assert "is not built here for" in found.message
-
-
 @pytest.mark.parametrize(
     ("change", "asked", "named"),
     [
         ({"frames": ("base",)}, {"frame": "world"}, "'world'"),
-        ({"geometries": ("box",)}, {"settings": {"geometry": "hull"}}, "'hull'"),
-        ({"spatial": False}, {"settings": {"planar": False}}, "plane"),
+        ({"stacks": False}, {"system": RockingFrame(**SIZE, load=1.0)}, "is not built here for"),
         (
             {},
             {"system": SlidingBlock(**SIZE, friction=0.2), "preset": "landing"},
@@ -112,8 +89,6 @@ def test_a_scene_refuses_what_is_not_allowed(options, message):
 def test_counts_that_an_engine_holds_one_by_one_are_bounded():
     with pytest.raises(ValueError, match="half_cycles is 1000001; it must be at most 1000000"):
         scene(pulse(1.3, 1.0, 10**6 + 1))
-    with pytest.raises(ValueError, match="count is 101; it must be a whole number from 1 to 100"):
-        SideBySide(block=BLOCK, count=101)
 
 
 @pytest.mark.parametrize("engine", HERE)
@@ -139,7 +114,7 @@ def test_an_engine_that_there_is_not_is_refused():
 def takes(engine, **options):
     """Build a scene, and go some steps: the library has refused no setting, then or before."""
     posed = scene(pulse(1.3, 1.0), **options)
-    world = build(HERE[engine], posed)
+    world = build(HERE[engine].use(posed))
     assert world.fault() == "", options
     world.close()
     assert run(engine, replace(posed, max_steps=20)).reason is not Reason.FAULT
@@ -174,7 +149,7 @@ def test_an_engine_is_imported_when_named_and_says_nothing(engine):
         "assert all(engine.presets for engine in ENGINES.values())\n"
         f"assert not {libraries!r} & set(sys.modules)\n"
         f"block, pulse = {BLOCK!r}, {SHAKEN!r}\n"
-        f"run({engine!r}, Scene(system=block, motion=pulse))\n"
+        f"run(ENGINES[{engine!r}].use(Scene(system=block, motion=pulse)))\n"
         f"assert not {libraries - own!r} & set(sys.modules)\n"
     )
     done = python("-c", script, path=sys.path)

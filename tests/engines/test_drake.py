@@ -111,6 +111,6 @@ def test_a_drive_that_yields_is_behind(monkeypatch):
 def test_naive_leaves_the_step_and_the_contact_to_the_library():
     from pydrake.multibody.plant import MultibodyPlantConfig
 
-    world = build(HERE["drake"], scene(preset="naive"))
+    world = build(HERE["drake"].use(scene(preset="naive")))
     assert world._plant.time_step() == MultibodyPlantConfig().time_step
     assert world._plant.get_contact_model().name == "kHydroelasticWithFallback"

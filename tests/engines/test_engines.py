@@ -10,7 +10,7 @@ import re
 
 import numpy as np
 import pytest
-from declared import equal_to
+from declared import NUISANCE, equal_to
 from given import BLOCK, all_but_times, pulse
 from uses import (
     CORE,
@@ -76,17 +76,18 @@ def test_how_a_block_lies_does_not_depend_on_the_steps(engine, preset):
     """Not up to the longest ones that the engine declares for a block at rest."""
     block, declared = RigidBlock(width=0.5, height=3.0), HERE[engine]
     asked = scene(pulse(1.2, 2.0, 1, block), system=block, preset=preset)
-    dt_s, resolved = declared.preset(preset).ordinary_step_s(asked), declared.resolution(block)
+    use = declared.use(asked)
+    dt_s, resolved = use.dt_s, use.resolution
     peaks = []
     for rest_factor in (1.0, resolved.rest_factor):
-        world = build(declared, asked)
+        world = build(use)
         try:
             within = resolved._replace(rest_factor=rest_factor)
             peaks.append(simulate_world(world, asked, dt_s, Stepping.LANDING, within).peak_ratio)
         finally:
             world.close()
     assert peaks[0] == pytest.approx(
-        peaks[1], rel=max(equal_to(engine, 1e-6), declared.nuisance_sensitivity)
+        peaks[1], rel=max(equal_to(engine, 1e-6), NUISANCE.get(engine, 0.0))
     )
 
 
@@ -94,7 +95,7 @@ def test_how_a_block_lies_does_not_depend_on_the_steps(engine, preset):
 def test_frames_agree(engine, preset):
     """A moving base is the body force -m u_g'': the two differ by rounding and slip alone."""
     base, world = (rocked(engine, preset=preset, frame=frame) for frame in FRAMES)
-    within = max(equal_to(engine, 1e-6), HERE[engine].nuisance_sensitivity)
+    within = max(equal_to(engine, 1e-6), NUISANCE.get(engine, 0.0))
     assert base.peak_ratio == pytest.approx(world.peak_ratio, rel=within)
     assert base.peak_ratio > 0.1
     assert world.observables.get(LAG, 0.0) < 1e-6
@@ -209,8 +210,8 @@ def test_repeats_bit_by_bit(engine, preset):
 def test_worlds_at_once_do_not_disturb_each_other(engine):
     """Nor take both what an earlier one gave back."""
     asked = scene(preset="fixed")
-    build(HERE[engine], asked).close()
-    first, second = (build(HERE[engine], asked) for _ in range(2))
+    build(HERE[engine].use(asked)).close()
+    first, second = (build(HERE[engine].use(asked)) for _ in range(2))
     before = np.array(second.state())
     take_a_step(first, asked, engine)
     assert (np.array(first.state()) != before).any()

@@ -76,7 +76,7 @@ def test_neither_mass_nor_force_of_a_floor_matters(engine, monkeypatch):
 def test_what_naive_pybullet_does_not_set_is_the_library_s_own():
     """Damping cannot be read back: two boxes that fly are slowed alike."""
     p = pytest.importorskip("pybullet")
-    world, bare = build(HERE["pybullet"], scene(preset="naive")), p.connect(p.DIRECT)
+    world, bare = build(HERE["pybullet"].use(scene(preset="naive"))), p.connect(p.DIRECT)
     half = (0.5 * BLOCK.width, 0.5 * BLOCK.width, 0.5 * BLOCK.height)
     box = p.createCollisionShape(p.GEOM_BOX, halfExtents=half, physicsClientId=bare)
     body = p.createMultiBody(375.0, box, physicsClientId=bare)
@@ -99,7 +99,7 @@ def test_what_naive_pybullet_does_not_set_is_the_library_s_own():
 
 def test_what_naive_mujoco_does_not_set_is_the_library_s_own():
     mj = pytest.importorskip("mujoco")
-    world = build(HERE["mujoco"], scene(preset="naive"))
+    world = build(HERE["mujoco"].use(scene(preset="naive")))
     bare, read = mj.MjModel.from_xml_string(BARE), world._model
     for name in dir(bare.opt):
         found = getattr(read.opt, name)

@@ -1,55 +1,26 @@
-"""Scenes of other things than one block: side by side, a frame, a slide; what they depend on."""
+"""Scenes of other things than one block: a frame, a slide."""
 
 import re
 from dataclasses import dataclass, replace
 
 import pytest
-from declared import equal_to
 from given import FULL_SINE as SINE
 from known import Bare
-from uses import BLOCK, HERE, agreed, pulse, rocked, scene
+from uses import BLOCK, HERE, agreed, rocked, scene
 
 from analytic import RockingFrame, SinePulse, SlidingBlock, Still
 from analytic.response import Outcome, Reason
-from engines import ENGINES
-from engines.declaration import UNTUNED, Stepping
+from engines.declaration import Stepping
 from engines.mujoco.settings import STACKED, TUNED
 from engines.mujoco.stacks import softened
-from engines.registry import OWN
 from engines.run.run import simulate_world
-from engines.scene import BASE, LOWER, UPPER, Ability, Scene, SideBySide, layout_of
+from engines.scene import BASE, LOWER, UPPER, Scene, layout_of
 from engines.world import Moment, Pose
 from studies.cases.drawn import RandomFrame
 
 STACKERS = ("pybullet", "box2d", "dart")
 """Engines that are helped where frames land, or have code of their own for it."""
-STACKING = [name for name, engine in HERE.items() if Ability.STACKED in engine.abilities]
-APART_BY = {"dart": 5e-4, "physx": 2e-2}
-"""Engine -> by how much two equal blocks differ, where that is more than its rounding."""
-
-APART = [
-    (name, preset.name)
-    for name, engine in HERE.items()
-    if Ability.SEVERAL in engine.holds
-    for preset in engine.presets
-    if preset.name not in UNTUNED
-]
-
-
-@pytest.mark.parametrize(("engine", "preset"), APART)
-def test_blocks_apart_rock_as_one_alone(engine, preset):
-    """To the rounding of the engine, but for DART and PhysX, whose contacts depend on where one is;
-    as they come, pymunk's ten sweeps do not converge, and hang on the order of its contacts."""
-    alone, both = (
-        rocked(engine, pulse(1.2, 2.0, 2), system=system, preset=preset)
-        for system in (BLOCK, SideBySide(block=BLOCK))
-    )
-    peaks = [both.observables["peak_1"], both.observables["peak_2"]]
-    assert peaks == pytest.approx(
-        [alone.peak_ratio] * 2, rel=APART_BY.get(engine, equal_to(engine))
-    )
-
-
+STACKING = [name for name, engine in HERE.items() if engine.stacks and name != "newton"]
 BOX = SlidingBlock(width=1.0, height=0.5, friction=0.2)
 
 
@@ -194,18 +165,6 @@ def test_a_frame_in_newton_lifts_rocks_and_stays_whole(preset):
     assert found.observables["tilt"] < 0.02
 
 
-def test_those_that_hold_stacks_by_code_of_their_own():
-    def apart(preset):
-        asks, engines = (Ability.SEVERAL, Ability.STACKED), {name: ENGINES[name] for name in OWN}
-        found = {name: it.builder(asks, it.preset(preset)) for name, it in engines.items()}
-        return {name for name, build in found.items() if build is not engines[name].build}
-
-    assert (apart(None), apart("fixed")) == (
-        {"box2d", "dart", "newton"},
-        {"mujoco", "newton"},
-    )
-
-
 HARD = {
     "a light beam, which lets go": (3.373, 9.294, 3, 0.6203, 3.198, 5, 0.578),
     "one that lets go between impacts": (3.153, 0.07137, 4, 0.9501, 4.923, 5, 0.3667),
@@ -257,5 +216,3 @@ class Nothing:
 def test_what_has_no_layout_is_named():
     with pytest.raises(TypeError, match="system is a Nothing; it must be one of RigidBlock, "):
         layout_of(Nothing(), 1000.0, None, (0.0, 0.0))
-    with pytest.raises(ValueError, match="count is 0; it must be a whole number from 1 to 100"):
-        SideBySide(block=BLOCK, count=0)

@@ -81,7 +81,7 @@ def test_a_run_answers_compiled_and_interpreted_alike(engine, options):
 
 
 def driven(**options):
-    world = build(ENGINES["mujoco"], scene(accuracy="loose", **options))
+    world = build(ENGINES["mujoco"].use(scene(accuracy="loose", **options)))
     world.close()
     return world.drive is not None
 

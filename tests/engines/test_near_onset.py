@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from declared import held_to
+from declared import MISSED as DECLARED
+from declared import Miss, held_to
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from uses import BLOCK, HERE, USES, pulse, rocked
@@ -12,7 +13,7 @@ from uses import BLOCK, HERE, USES, pulse, rocked
 from analytic import RigidBlock, simulate
 from analytic.record import Record
 from analytic.response import Outcome
-from engines.declaration import UNTUNED, Deviation, Stepping
+from engines.declaration import UNTUNED, Stepping
 
 MISSED = {
     "naive": (0.5, 0.5),  # some lean, or hop, in their contact before the onset
@@ -22,9 +23,7 @@ MISSED = {
     "physx": (1e-3, 1e-3),  # of a small swing single precision tells less apart
 }
 """By how much of alpha, or of itself, a peak near the onset may be missed; most are small."""
-AWAKE = [
-    (name, use) for name, use in USES if Deviation.SLEEP not in HERE[name].preset(use).deviations
-]
+AWAKE = [(name, use) for name, use in USES if f"{name}:{use}" not in DECLARED[Miss.SLEEP]]
 MOST = 40_000
 """Steps, of some thousands that are needed."""
 
@@ -58,7 +57,7 @@ def test_hardly_above_the_onset(engine, preset, excess, omega, aspect, half_cycl
 
 
 @pytest.mark.parametrize(
-    ("engine", "preset"), [pytest.param(*use, marks=held_to(Deviation.SLEEP, *use)) for use in USES]
+    ("engine", "preset"), [pytest.param(*use, marks=held_to(Miss.SLEEP, *use)) for use in USES]
 )
 @pytest.mark.parametrize("quiet_s", [0.7, 2.0])
 def test_a_quiet_start_changes_nothing_but_the_time(engine, preset, quiet_s):

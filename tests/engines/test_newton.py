@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from declared import run
 from uses import BLOCK, HERE, error, pulse, rocked, scene, take_a_step
 
 from analytic import simulate
@@ -11,7 +12,7 @@ from analytic.response import Outcome
 from engines import ENGINES
 from engines.declaration import AT_REST
 from engines.newton import models as newton_models
-from engines.run.run import build, run
+from engines.run.run import build
 
 pytestmark = pytest.mark.skipif("newton" not in HERE, reason="newton is not installed")
 
@@ -45,7 +46,7 @@ def test_corrections_without_weights_are_made_by_each_corner():
 
 def test_a_recorded_step_has_its_length_for_good():
     """Another one would be taken as if it were as long as the one that was recorded."""
-    world = build(HERE["newton"], scene())
+    world = build(HERE["newton"].use(scene()))
     step = take_a_step(world, scene(), "newton")
     assert not world.fault()
     world.step(step._replace(dt_s=2.0 * step.dt_s))
@@ -70,7 +71,7 @@ def test_a_model_is_as_good_as_new_for_the_next_run(solver):
 def test_what_naive_leaves_is_what_the_library_does_itself():
     import newton
 
-    world = build(HERE["newton"], scene(preset="naive"))
+    world = build(HERE["newton"].use(scene(preset="naive")))
     solver, bare = world._recorded._solver, newton.solvers.SolverXPBD(world._recorded.model)
     for name in (
         *("iterations", "rigid_contact_relaxation", "rigid_contact_con_weighting"),

@@ -28,13 +28,13 @@ def test_a_block_held_before_it_strikes_strikes_twice():
 def test_its_own_settings_are_told_apart_by_what_is_read_back():
     """Its threshold of a bounce, its sleep and its material are the library's where none is set."""
     physx = imported("sapien").physx
-    build(ENGINES["physx"], scene(preset="naive")).close()
+    build(ENGINES["physx"].use(scene(preset="naive"))).close()
     body = physx.PhysxRigidDynamicComponent()
     assert body.sleep_threshold == pytest.approx(0.005)
     assert (body.solver_position_iterations, body.solver_velocity_iterations) == (10, 1)
     assert physx.PhysxCpuSystem().config.bounce_threshold == 2.0
     asked = scene(preset="fixed", settings={"bounce_threshold": 0.01, "units": None})
-    world = build(ENGINES["physx"], asked)
+    world = build(ENGINES["physx"].use(asked))
     assert world.fault() == ""
     world.close()
     assert physx.PhysxCpuSystem().config.bounce_threshold == pytest.approx(0.01)

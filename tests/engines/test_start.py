@@ -151,7 +151,7 @@ def test_a_balanced_block_may_be_shaken():
 def test_a_block_sets_out_from_where_it_should(engine, preset):
     """On the corner on the side of its lean, whatever was tried before so that it is compiled."""
     asked = scene(start=(-TILT, 0.2 * BLOCK.p * BLOCK.alpha), preset=preset)
-    world = build(HERE[engine], asked)
+    world = build(HERE[engine].use(asked))
     assert world.state()[0] == pytest.approx(standing(asked, *asked.start), rel=1e-6)
     world.close()
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from declared import run
 
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, installed_engines
@@ -13,7 +14,7 @@ from engines.mujoco.settings import TUNED, MujocoSettings
 from engines.pybullet.build import BulletWorld
 from engines.pybullet.settings import BulletSettings
 from engines.run.look import Monitor
-from engines.run.run import build, run
+from engines.run.run import build
 from studies.cases.selection import chosen_cases
 from studies.cases.variants import variants
 
@@ -106,7 +107,7 @@ def test_what_is_not_allowed_is_named(settings, values, message):
 def test_solref_and_margin_reach_the_library():
     settings = of("mujoco", BEST, "reference: 2 dt 1").settings
     asked, dt_s = scene(preset=BEST, settings={**settings, "margin": 1e-3}), 1e-3
-    world = build(ENGINES["mujoco"], asked)
+    world = build(ENGINES["mujoco"].use(asked))
     monitor = Monitor(asked, dt_s, Stepping.FIXED)
     monitor.make_room(1)
     world.step(monitor.next(world.state()))

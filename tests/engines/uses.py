@@ -1,14 +1,15 @@
 """Every engine under every preset, and what may be asked of it by what it declares."""
 
+from dataclasses import replace
+
 import pytest
-from declared import held_to
+from declared import NUISANCE, Miss, held_to, run
 from given import BLOCK, pulse
 
 from analytic import Outcome, simulate
 from engines import ENGINES, FRAMES, Scene, core_engines
-from engines.declaration import UNTUNED, Deviation, Stepping
+from engines.declaration import UNTUNED, Stepping
 from engines.run.look import Monitor
-from engines.run.run import run
 from engines.world import ROUNDINGS
 from studies.cases.paper import sweep_cases
 
@@ -29,12 +30,12 @@ def scene(motion=SHAKEN, **options):
 def held_frames(engine, preset):
     """Return the frames in which a preset can hold the base, as its engine declares."""
     declared = HERE[engine]
-    asked = ((frame, scene(frame=frame)) for frame in declared.frames)
-    return [frame for frame, posed in asked if not declared.lacks(posed, declared.preset(preset))]
+    asked = ((frame, scene(frame=frame, preset=preset)) for frame in declared.frames)
+    return [frame for frame, posed in asked if not declared.use(posed).lacking]
 
 
 TUNED_IN_FRAMES = [(*use, frame) for use in TUNED for frame in held_frames(*use)]
-MIRRORED = [pytest.param(*use, marks=held_to(Deviation.MIRROR, *use)) for use in USES]
+MIRRORED = [pytest.param(*use, marks=held_to(Miss.MIRROR, *use)) for use in USES]
 
 every_use = pytest.mark.parametrize(("engine", "preset"), USES)
 every_tuned_use = pytest.mark.parametrize(("engine", "preset"), TUNED)
@@ -60,7 +61,7 @@ def speed_band(engine):
 
     It is extrapolated over three rows by up to two steps, which adds up to 17 times their errors.
     """
-    return max(band(engine), 17.0 * max(noise(engine, 5e-3), HERE[engine].nuisance_sensitivity))
+    return max(band(engine), 17.0 * max(noise(engine, 5e-3), NUISANCE.get(engine, 0.0)))
 
 
 def band(engine):
@@ -70,7 +71,7 @@ def band(engine):
     asked that no impact falls inside an ordinary step, which would cost some p dt, or what an
     engine declares as its sensitivity.
     """
-    return 1e-4 if engine in core_engines() else max(1e-3, HERE[engine].nuisance_sensitivity)
+    return 1e-4 if engine in core_engines() else max(1e-3, NUISANCE.get(engine, 0.0))
 
 
 def rocked(engine, motion=SHAKEN, **options):
@@ -108,7 +109,8 @@ def errors_of_sweep(engine, every, **options):
 
 def take_a_step(world, posed, engine):
     """Take the first of the steps that a fixed preset takes in a scene; return it."""
-    monitor = Monitor(posed, HERE[engine].preset("fixed").ordinary_step_s(posed), Stepping.FIXED)
+    use = HERE[engine].use(replace(posed, preset="fixed"))
+    monitor = Monitor(use.scene, use.dt_s, Stepping.FIXED)
     monitor.make_room(1)
     step = monitor.next(world.state())
     world.step(step)

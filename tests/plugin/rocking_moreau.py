@@ -168,6 +168,5 @@ ENGINE = Engine(
         ),
     ),
     frames=("base",),
-    geometries=("corners",),
     factors=(factor("closing"), factor("friction", level("1", friction=1.0))),
 )

@@ -4,7 +4,6 @@ import pymunk
 
 from engines.declaration import Engine, Preset
 from engines.registry import PlainSettings
-from engines.scene import Ability
 from engines.world import Moment
 
 
@@ -51,5 +50,5 @@ ENGINE = Engine(
         Preset(name="fixed", title="equal steps", settings=PlainSettings(), step=1e-3, stacked={}),
     ),
     frames=("base",),
-    abilities=(Ability.SEVERAL, Ability.STACKED),
+    stacks=True,
 )

@@ -8,7 +8,6 @@ from commanding import refused
 
 from engines import ENGINES, installed_engines
 from engines.declaration import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
-from engines.scene import Ability
 from studies import contact
 from studies.cases.selection import chosen_cases
 from studies.cases.variants import STILL, variants
@@ -101,9 +100,7 @@ def test_what_changes_the_defaults_is_asked_at_the_library_s_own_step_too(engine
     assert len({job.key for job in jobs}) == len(jobs)
 
 
-@pytest.mark.parametrize(
-    "engine", [name for name in installed_engines() if Ability.STACKED in ENGINES[name].holds]
-)
+@pytest.mark.parametrize("engine", [name for name in installed_engines() if ENGINES[name].stacks])
 def test_of_frames_every_preset_is_asked_that_holds_one(engine):
     jobs = contact.jobs((), True, contact.Options(engines=(engine,), scene="frame"))
     built = {use.name for use in ENGINES[engine].presets if use.stacked is not None}

@@ -10,6 +10,7 @@ from dataclasses import replace
 import commanding
 import pytest
 from commanding import CASE, refused, run_scripts
+from declared import run
 from given import BLOCK, PULSE
 
 from analytic import RockingFrame, SinePulse, SlidingBlock
@@ -17,7 +18,6 @@ from analytic.record import Record
 from analytic.response import Reason
 from engines import ENGINES, Scene, installed_engines
 from engines.declaration import UNTUNED, Stepping
-from engines.run.run import run
 from studies.__main__ import run as rocking
 from studies.export import files, script_of, unwritten
 from studies.kit.identity import version_of
@@ -89,7 +89,7 @@ def write(folder, engine, asked, expected):
 def test_exported_scenes_find_alone_what_the_runs_do(engine, kind, tmp_path):
     scripts, expected, declared = [], [], ENGINES[engine]
     for number, asked in enumerate(scenes_of(engine, kind)):
-        if unwritten(declared, declared.used_for(asked), asked):
+        if unwritten(declared, declared.use(asked).preset, asked):
             assert (engine, kind) == ("newton", "frame")
             continue
         response = run(engine, asked)
@@ -134,7 +134,7 @@ def test_settings_stand_in_the_files_letter_by_letter(engine, preset):
     asked, declared = scene(PULSE, preset), ENGINES[engine]
     script = script_of(declared, asked)
     whole = "\n".join((*script.build, *script.step, *script.files.values()))
-    whole = whole.replace("DT", repr(declared.preset(preset).ordinary_step_s(asked)))
+    whole = whole.replace("DT", repr(declared.use(replace(asked, preset=preset)).dt_s))
     assert script.settings and [line for line in script.settings if line not in whole] == []
     friction = repr(float(declared.preset(preset).settings.friction))
     assert any(friction in line for line in script.settings)

@@ -7,12 +7,12 @@ from functools import partial
 import pandas as pd
 import pytest
 from commanding import run_scripts
+from declared import run
 from given import BLOCK
 
 from analytic import simulate
 from engines import ENGINES, Scene
 from engines.declaration import DEFAULT, OWN_STEPS
-from engines.run.run import run
 from studies.__main__ import run as run_command
 from studies.advise.symptoms import HULL, MEASURED, OWN, SYMPTOMS, UNMOVED, VARIANTS, find, patch
 from studies.cases.paper import free_rocking_window, sweep_cases
@@ -42,7 +42,7 @@ def test_the_published_symptoms_follow_from_the_published_tables(lines):
     assert set(zip(mine["symptom"], mine["engine"], strict=True)) == {
         (symptom.name, engine) for symptom in SYMPTOMS for engine in CORE
     }
-    hulls = [name for name in lines["engine"].unique() if "hull" in ENGINES[name].geometries]
+    hulls = [name for name in lines["engine"].unique() if ENGINES[name].best.takes(geometry="hull")]
     assert list(lines.loc[lines["symptom"] == HULL.name, "engine"]) == hulls
 
 
@@ -139,7 +139,7 @@ def test_a_setting_that_is_pasted_into_a_script_does_what_it_does_here(
     for step in (None, 1e-3):
         scene = Scene(**asked, step=step)
         mended = Scene(**asked, step=step, settings=mending[DEFAULT, factor, level])
-        peak, dt_s = run(engine, mended).peak_ratio, declared.preset(DEFAULT).ordinary_step_s(scene)
+        peak, dt_s = run(engine, mended).peak_ratio, declared.use(scene).dt_s
         changes = patch(case.block, engine, factor, level, dt_s)
         scripts.append(tmp_path / f"{step}" / "block.py")
         scripts[-1].parent.mkdir()
