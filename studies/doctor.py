@@ -15,10 +15,9 @@ from engines.declaration import UNTUNED
 from engines.parts.compiled import PACKAGE
 from studies.cases.paper import HISTORIES
 from studies.kit.arguments import TimeLimit
-from studies.kit.cluster import place_of
 from studies.kit.identity import COMPUTING, version_of
 from studies.kit.jobs import Job, Question, Row, answer
-from studies.kit.options import Computing
+from studies.kit.run import local
 from studies.kit.say import part
 from studies.kit.store import project_version, usable_cores
 from studies.sources.registry import Source
@@ -29,7 +28,6 @@ LOOSE, EQUAL, LANDING = 0.3, 2e-2, 1e-4
 """Relative error of its peak that a preset should keep: as documented, at equal steps, landing."""
 LANDING_SINGLE = {"rapier": 6e-3, "physx": 6e-3}
 """Engine -> that of steps that land, where its numbers are in single precision."""
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 LEAST_BYTES = 5e8
 """Free space that the results of most studies fit into."""
 
@@ -37,9 +35,8 @@ LEAST_BYTES = 5e8
 def command(*, time_limit: TimeLimit = 600.0) -> int:
     """Does this installation work? Some ten lines to paste into a report.
 
-    Versions, where compiled functions are kept, cores, threads and disk; and one block in each
-    engine that is here, in a process of its own. Exit code 1 when something fails; its line says
-    what to do.
+    Versions, where compiled functions are kept, cores and disk; and one block in each engine that
+    is here, in a process of its own. Exit code 1 when something fails; its line says what to do.
 
     Parameters
     ----------
@@ -61,19 +58,17 @@ def surroundings() -> Iterator[tuple[str, str]]:
     places = [kept_in(sources) for sources in (SOURCES, PACKAGE)]
     remedy = "set NUMBA_CACHE_DIR to a folder that can be written" if None in places else ""
     yield f"compiled functions are kept in {places[0] or 'no folder'}", remedy
-    threads = ", ".join(f"{name} {os.environ.get(name, 'not set')}" for name in THREADS)
-    yield f"{usable_cores()} of {os.cpu_count()} cores; {threads}", ""
     free = shutil.disk_usage(Path.cwd()).free
     remedy = "" if free >= LEAST_BYTES else "free some, or write elsewhere with --out"
-    yield f"{1e-9 * free:.1f} GB free in this folder", remedy
+    yield f"{usable_cores()} of {os.cpu_count()} cores, {1e-9 * free:.1f} GB free here", remedy
 
 
 def engines(time_limit_s: float) -> Iterator[tuple[str, str]]:
     """Ask every engine that is here about one block, and name those that are not."""
     case, here = Question(system=CASE.block, motion=CASE.motion), installed_engines()
     jobs = [Job(labels={}, case=case, source=name) for name in here]
-    place = place_of(Computing(time_limit=time_limit_s), at_once=True)
-    yield from (compare(jobs[number].asked, row) for number, row in place(jobs, answer))
+    rows = local(jobs, answer, usable_cores(), time_limit_s, at_once=True)
+    yield from (compare(jobs[number].asked, row) for number, row in rows)
     if absent := sorted(ENGINES.keys() - here):
         names = [f"{name} (pip install '{ENGINES[name].install}')" for name in absent]
         yield f"not installed, which is no fault: {', '.join(names)}", ""
@@ -87,10 +82,9 @@ def compare(source: Source, row: Row) -> tuple[str, str]:
     error = abs(row["peak_ratio"] / exact.peak_ratio - 1.0)
     if row["outcome"] == exact.outcome.value and error <= keeps:
         return f"{asked}: relative error of the peak {part(error)}, {part(keeps)} allowed", ""
-    found = f"{row['outcome']}, peak {row['peak_ratio']:.4g}"
-    known = f"the exact solution: {exact.outcome.value}, peak {exact.peak_ratio:.4g}"
+    found = f"{row['outcome']}, peak {row['peak_ratio']:.4g}; exactly {exact.peak_ratio:.4g}"
     remedy = f"pip install --force-reinstall '{engine.install}', then report it"
-    return f"{asked}: {row['message'] or f'{found}; {known}'}", remedy
+    return f"{asked}: {row['message'] or found}", remedy
 
 
 def should_keep(source: Source) -> float:

@@ -12,12 +12,9 @@ import pandas as pd
 
 from engines import ENGINES
 from engines.declaration import (
-    AS_BEST,
-    AT_REST,
     BEST,
     DEFAULT,
     LEFT_OUT,
-    RECOMMENDED,
     Help,
     Stepping,
 )
@@ -40,8 +37,7 @@ TITLES = {name: ENGINES[name].title for name in OWN}
 
 def presets(published: Path) -> pd.DataFrame:
     """Return a line for each preset and engine over the paper's cases."""
-    folders = [published / name for name in ("presets", "sweep")]
-    known = [table_in(folder, "summary") for folder in folders]
+    known = [table_in(published / name, "summary") for name in ("presets", "sweep")]
     lines = pd.concat([preset_table(over_all(each)) for each in known if len(each)])
     return lines if lines.empty else lines.drop_duplicates("source", ignore_index=True)
 
@@ -59,9 +55,9 @@ def in_scenes(published: Path) -> Table:
         columns={"median_error": "error", "ms_a_frame": "time"}
     )
     heads, rows = ["engine", "settings", "block", "run time", "frame", "run time"], []
-    lines = {"block": block.assign(wrong=block[list(KINDS)].sum(axis=1)), "frame": frame}
+    block = block.assign(wrong=block[list(KINDS)].sum(axis=1))
     for name in dict.fromkeys(block["engine"]):
-        mine = [known[known["source"].map(engine_of) == name] for known in lines.values()]
+        mine = [known[known["source"].map(engine_of) == name] for known in (block, frame)]
         order = in_order(mine[0]["source"].map(preset_of))
         for preset in dict.fromkeys((order[0], order[-1])):
             cells = [cell for known in mine for cell in _outcomes(known, preset)]
@@ -81,7 +77,7 @@ def in_scene(published: Path, name: str) -> Table:
     """Return the summary of a scene's engines, its numbers in words."""
     lines = table_in(published / "scenes", f"{name}-summary")
     rows = [
-        [_cell(str(head), cell) for head, cell in line.items()] for line in lines.to_dict("records")
+        [_cell(str(head), it) for head, it in line.items()] for line in lines.to_dict("records")
     ]
     return [str(head).replace("_", " ") for head in lines], rows
 
@@ -169,22 +165,17 @@ def beside_own() -> str:
     return "; ".join(said)
 
 
-def _variants(published: Path, name: str = "variants") -> pd.DataFrame:
-    return table_in(published / "contact", name, "factor", "level", "trap")
+def _variants(published: Path) -> pd.DataFrame:
+    return table_in(published / "contact", "variants", "factor", "level", "trap")
 
 
-def variant_of(
-    lines: pd.DataFrame, engine: str, preset: str, factor: str = "", level: str = ""
-) -> Line | None:
-    """Return the line of a preset, or of a variant of it; None where there is none."""
-    wanted = (lines["engine"] == engine) & (lines["preset"] == preset)
-    wanted &= lines["factor"] == factor
-    if level:
-        wanted &= lines["level"] == level
-    return lines[wanted].iloc[0] if wanted.any() else None
+def _line_of(lines: pd.DataFrame, **labels: str) -> Line | None:
+    """Return the first line that has some labels; None where there is none."""
+    mine = lines[(lines[list(labels)] == pd.Series(labels)).all(axis=1)]
+    return None if mine.empty else mine.iloc[0]
 
 
-def _errors(line: Line, columns: Sequence[str] = ("median_error", "max_error")) -> str:
+def _errors(line: Line, *columns: str) -> str:
     """Return errors of a variant, and how many of its cases are wrong."""
     if line["failed"] == line["cases"]:
         return "no result"
@@ -210,13 +201,13 @@ def helps(published: Path) -> Table:
 
 
 def _prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
-    best = ENGINES[engine].best.name
-    mine = lines[(lines["engine"] == engine) & (lines["preset"] == best)]
-    words = {}
-    for line in mine[mine["factor"].isin(["", LEFT_OUT])].to_dict("records"):
-        words[line["level"].upper() if line["factor"] else ""] = _errors(line, ("max_error",))
-    equal = variant_of(lines, engine, BEST)
-    return words | ({} if equal is None else {"STEPS": _errors(equal, ("max_error",))})
+    mine = lines[(lines["engine"] == engine) & (lines["preset"] == ENGINES[engine].best.name)]
+    words = {
+        line["level"].upper() if line["factor"] else "": _errors(line, "max_error")
+        for line in mine[mine["factor"].isin(["", LEFT_OUT])].to_dict("records")
+    }
+    equal = _line_of(lines, engine=engine, preset=BEST, factor="")
+    return words | ({} if equal is None else {"STEPS": _errors(equal, "max_error")})
 
 
 def rules(published: Path) -> Iterator[tuple[str, str, str, str]]:
@@ -225,44 +216,14 @@ def rules(published: Path) -> Iterator[tuple[str, str, str, str]]:
     One helps if fewer outcomes are wrong with it, or as many and the median error is smaller.
     """
     lines = _variants(published)
-    for engine in OWN:
-        for rule in ENGINES[engine].rules:
-            plain = variant_of(lines, engine, rule.preset)
-            other = variant_of(lines, engine, rule.preset, rule.factor, rule.level)
-            if plain is not None and other is not None:
-                pair = (plain, other) if rule.kept else (other, plain)
-                wrong, kept = ((it["failed"] + it["wrong"], it["median_error"]) for it in pair)
-                without, with_it = map(_errors, pair)
-                if kept < wrong:
-                    yield TITLES[engine], rule.words, without, with_it
-
-
-def objections(published: Path) -> Iterator[tuple[str, ...]]:
-    """Yield an engine's title and what was tried in its favour, with the errors beside it."""
-    lines, own = presets(published), _variants(published, "own-steps")
-    lines = lines.rename(columns={"median": "median_error", "max": "max_error"})
-    lines = lines.assign(failed=0, wrong=lines["cases"] - lines["right"])
-    for engine in OWN:
-        mine = {line["preset"]: line for _, line in lines[lines["engine"] == engine].iterrows()}
-        for name in (RECOMMENDED, AT_REST):
-            if {name, DEFAULT} <= mine.keys():
-                pair = [_errors(mine[each]) for each in (DEFAULT, name)]
-                yield TITLES[engine], look_of(name).short, f"{mine[name]['cases']} cases", *pair
-        plain = variant_of(own, engine, DEFAULT)
-        if plain is not None:
-            for line in _better(own, engine, plain):
-                setting = f"{line['factor']}: {line['level']}".replace(AS_BEST, f"as `:{BEST}`")
-                cases = f"{plain['cases']} of them"
-                yield TITLES[engine], setting, cases, _errors(plain), _errors(line)
-
-
-def _better(lines: pd.DataFrame, engine: str, plain: Line) -> list[dict[Any, Any]]:
-    """Return the two single settings that lower the median error most, and get no more wrong."""
-    mine = (lines["engine"] == engine) & (lines["preset"] == DEFAULT)
-    varied = lines[mine & (lines["factor"] != "") & (lines["trap"] == "")]
-    right = varied["failed"] + varied["wrong"] <= plain["failed"] + plain["wrong"]
-    better = varied[right & (varied["median_error"] < plain["median_error"])]
-    better = better.sort_values("median_error")
-    alike = better["median_error"].map("{:.3e}".format)  # two names of one thing
-    best: pd.DataFrame = better[~alike.duplicated() & ~better["factor"].duplicated()]
-    return best.head(2).to_dict("records")
+    for engine, rule in ((name, rule) for name in OWN for rule in ENGINES[name].rules):
+        level = {"level": rule.level} if rule.level else {}
+        plain = _line_of(lines, engine=engine, preset=rule.preset, factor="")
+        other = _line_of(lines, engine=engine, preset=rule.preset, factor=rule.factor, **level)
+        if plain is None or other is None:
+            continue
+        pair = (plain, other) if rule.kept else (other, plain)
+        wrong, kept = ((it["failed"] + it["wrong"], it["median_error"]) for it in pair)
+        if kept < wrong:
+            errors = [_errors(it, "median_error", "max_error") for it in pair]
+            yield TITLES[engine], rule.words, errors[0], errors[1]

@@ -25,8 +25,8 @@ def diagnosed(capsys, monkeypatch, *here):
 
 def test_what_works_is_a_page_of_short_lines(capsys, monkeypatch):
     code, text, failing = diagnosed(capsys, monkeypatch, "mujoco")
-    assert (code, failing, text.count("\n")) == (0, [], 6)
-    for words in (f"numpy {version_of('numpy')}", "Python 3.", "cores; OMP_NUM_THREADS", "GB free"):
+    assert (code, failing, text.count("\n")) == (0, [], 5)
+    for words in (f"numpy {version_of('numpy')}", "Python 3.", "cores, ", "GB free"):
         assert words in text
     assert re.search(r"mujoco:landing \(mujoco [\d.]+\): .*10⁻⁶, 10⁻⁴ allowed", text)
     assert "box2d (pip install 'rocking[box2d]')" in text
@@ -52,8 +52,8 @@ def errs(block, motion, *, duration, times, strength):
     ("strength", "answer"),
     [
         (0.0, "it exploded"),
-        (0.1, "at rest, peak 0; the exact solution: rocked, peak 0.3852; "),
-        (1.001, "rocked, peak 0.3955; "),
+        (0.1, "at rest, peak 0; exactly 0.3852; "),
+        (1.001, "rocked, peak 0.3955; exactly"),
     ],
 )
 def test_an_engine_that_fails_or_is_wrong_is_a_line(strength, answer, capsys, monkeypatch):
