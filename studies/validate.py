@@ -18,9 +18,9 @@ from analytic.block import Rocker
 from analytic.response import Outcome
 from studies.cases.drawn import Drawn, RandomCase, census, draw
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import Count, Yes, one_of, refuse_both, refuse_given
+from studies.kit.arguments import Count, one_of, refuse_both, refuse_given
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.options import Computing, EffortOptions, Yours
+from studies.kit.options import CASE_BYTES, EffortOptions, Yours, refuse_excess
 from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
 from studies.measures.differences import (
@@ -76,7 +76,6 @@ class Options(EffortOptions):
     seed: Count = 1
     scene: Annotated[Drawn, one_of(Drawn)] = "block"
     yours: Yours = Yours()  # noqa: RUF009
-    yes: Yes = False
 
     def settings(self, sources: Sequence[str], system: Rocker) -> dict[str, Row]:
         """Return what the options set of each source."""
@@ -91,11 +90,7 @@ def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
         refuse_given({"tests": options.tests}, "only with --halves")
     cases, tests = options.cases or CASES[options.halves][quick], options.tests or TESTS[quick]
     options.refuse_idle(sources)
-    # the exact solution says which cases are kept
-    asked, count, everyone = f"--cases is {cases}", cases, tuple(sources)
-    if options.halves:
-        asked, count, everyone = f"{asked}, --tests {tests}", cases + tests, 3 * everyone
-    Computing().refuse_too_much(asked, count, ("exact", *everyone), yes=options.yes, effort=options)
+    refuse_excess(f"--cases is {cases}", 2 * cases * len(sources) * CASE_BYTES)
     if options.halves:
         return _with_halves(sources, cases, tests, options)
     return [

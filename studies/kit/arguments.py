@@ -110,7 +110,6 @@ _CYCLES = (
 HalfCycles = Annotated[int, _number(_CYCLES, 1, MOST_HALF_CYCLES)]
 Place = Annotated[Path, _read("a path; one that begins with a dash is written ./-name", _path)]
 Out = Annotated[Place, Parameter(help="Folder for the results; made if there is none.")]
-Yes = Annotated[bool, Parameter(help="Begin even what takes longer than a day.")]
 several = Parameter(consume_multiple=True, show_default=_spaced)
 several_or_none = Parameter(consume_multiple=1)
 """Values separated by spaces; of the second at least one, and None where it is not given."""

@@ -10,7 +10,6 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from analytic.slide import SlidingBlock
-from engines.declaration import Stepping
 from engines.scene import System
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import (
@@ -25,10 +24,8 @@ from studies.kit.arguments import (
     several_or_none,
 )
 from studies.kit.store import usable_cores
-from studies.sources.registry import DEFAULT_EFFORT, Accuracy, Effort, resolve
+from studies.sources.registry import Accuracy, Effort, resolve
 
-CASE_S = {"model": 1e-3, "solver": 5e-3, "peer": 0.05, "engine": 0.1}
-"""About what a case takes a source of each kind, its row in the table included [s]."""
 CASE_BYTES, PROCESS_BYTES = 4e3, 2e8
 """About what a case with its row holds of memory, and what a process with an engine does."""
 
@@ -61,28 +58,6 @@ class Computing:
     def workers(self) -> int:
         """Processes side by side."""
         return self.jobs or usable_cores()
-
-    def refuse_too_much(
-        self,
-        asked: str,
-        cases: int,
-        sources: Sequence[str],
-        *,
-        yes: bool,
-        effort: Effort = DEFAULT_EFFORT,
-    ) -> None:
-        """Refuse more cases than fit into memory, or, without a yes, into a day.
-
-        What the user asked for begins the refusal; each source is asked about each case.
-        """
-        refuse_excess(asked, cases * len(sources) * CASE_BYTES)
-        seconds = 0.0
-        for name in sources:
-            kind = resolve(name).kind
-            finer = max(1e-3 / float(effort.options(name).get("step", 1e-3)), 1.0)
-            workers = self.workers if kind == "engine" else 1
-            seconds += cases * min(CASE_S[kind] * finer, self.time_limit) / workers
-        refuse_days(asked, seconds, yes)
 
 
 @Parameter(name="*")
@@ -157,33 +132,19 @@ class Yours:
         for name, source in asked.items():
             if self.friction is not None and source.engine:
                 chosen[name]["friction"] = self.friction
-            if self.dt is None or not source.stepping:
-                continue
-            if source.accurate:
-                presets = [it for it in source.declared.presets if it.stepping is Stepping.FIXED]
-                equal = " or ".join(f"{source.engine}:{it.name}" for it in presets)
-                words = f"{name} takes {source.used.stepping.value}: ask {equal}"
-                raise BadInputError(
-                    f"--dt is {self.dt:g}; it must come with equal steps, and {words}"
-                )
-            chosen[name]["step"] = self.dt * system.p
+            if self.dt is not None and source.accurate:
+                words = f"it must come with equal steps, and {name} takes"
+                raise BadInputError(f"--dt is {self.dt:g}; {words} {source.used.stepping.value}")
+            if self.dt is not None and source.stepping:
+                chosen[name]["step"] = self.dt * system.p
         return chosen
-
-
-def refuse_days(asked: str, seconds: float, yes: bool) -> None:
-    """Refuse what takes longer than a day [s], unless that is wanted; `asked` begins the line."""
-    if (days := seconds / 86_400.0) > 1.0 and not yes:
-        words = f"that takes about {days:.1f} days, and more than one needs --yes"
-        raise BadInputError(f"{asked}; {words}")
 
 
 def refuse_excess(asked: str, held: float) -> None:
     """Refuse what needs more memory [byte] than there is, or than its container may use."""
     limits = [float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))]
-    for name in ("memory.max", "memory/memory.limit_in_bytes"):
-        # a container without a limit says "max"
-        with contextlib.suppress(OSError, ValueError):
-            limits.append(float(int(Path("/sys/fs/cgroup", name).read_text())))
+    with contextlib.suppress(OSError, ValueError):  # a container without a limit says "max"
+        limits.append(float(Path("/sys/fs/cgroup/memory.max").read_text()))
     if held > (there := min(limits)):
         needs = f"that needs about {held / 1e9:.0f} GB of memory"
         raise BadInputError(f"{asked}; {needs}, and at most {there / 1e9:.0f} GB are there")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from studies.kit.study import Study, Tables
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Part:
     """A folder of results, and the command that fills it, with its further arguments.
 
@@ -24,6 +24,7 @@ class Part:
     folder: str
     name: str
     title: str = ""
+    always: tuple[str, ...] = ()
     quick: tuple[str, ...] = ("--quick",)
     full: tuple[str, ...] = ()
     weaker: str = ""
@@ -36,7 +37,7 @@ class Part:
 
     def words(self, out: Path | str, full: bool) -> list[str]:
         """Return the command line after `rocking`."""
-        return [self.name, "--out", str(out), *(self.full if full else self.quick)]
+        return [self.name, "--out", str(out), *self.always, *(self.full if full else self.quick)]
 
     def command(self, full: bool) -> str:
         """Return the whole command line."""
@@ -66,20 +67,16 @@ def statements(tables: Tables) -> list[tuple[bool, str]]:
     ]
 
 
-HALVES = ("--halves", "--sources", "core", "core:fixed", "core:naive")
-
 CHAPTERS: dict[str, tuple[Part, ...]] = {
     "The paper's cases": (
         Part(
-            folder="sweep",
-            name="sweep",
+            *("sweep", "sweep"),
             quick=("--accuracy", "loose"),
             weaker="The engines step at the accuracy loose instead of standard.",
         ),
         Part(
-            folder="presets",
-            name="sweep",
-            title="Do engines predict them with their default settings, and with tuned ones?",
+            *("presets", "sweep"),
+            "Do engines predict them with their default settings, and with tuned ones?",
             quick=("--figure", "8", "--sources", "exact", "core:naive"),
             full=(
                 *("--sources", "exact", "engines:naive", "engines:naive-base-at-rest"),
@@ -89,54 +86,42 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         ),
     ),
     "The paper's histories and linearizations": (
-        Part(folder="histories", name="histories", quick=()),
-        Part(folder="linearizations", name="linearizations", quick=()),
+        Part("histories", "histories", quick=()),
+        Part("linearizations", "linearizations", quick=()),
     ),
     "Random cases": (
-        Part(folder="validate", name="validate"),
+        Part("validate", "validate"),
         Part(
-            folder="estimate",
-            name="validate",
-            title="How far off is a peak where there is no exact solution?",
-            full=HALVES,
-            quick=(*HALVES, "--quick"),
+            *("estimate", "validate", "How far off is a peak where there is no exact solution?"),
+            always=("--halves", "--sources", "core", "core:fixed", "core:naive"),
             weaker="So few random cases that no factor has an upper end.",
         ),
     ),
-    "Error against run time": (
-        Part(folder="precision", name="precision"),
-        Part(folder="advice", name="advise", quick=()),
-    ),
+    "Error against run time": (Part("precision", "precision"), Part("advice", "advise", quick=())),
     "Contact models": (
-        Part(folder="contact", name="contact"),
+        Part("contact", "contact"),
         Part(
-            folder="contact-frames",
-            name="contact",
-            title="What does each setting cost and buy on frames?",
-            quick=("--scene", "frame", "--quick"),
-            full=("--scene", "frame"),
+            *("contact-frames", "contact", "What does each setting cost and buy on frames?"),
+            always=("--scene", "frame"),
         ),
-        Part(folder="restitution", name="restitution", quick=()),
+        Part("restitution", "restitution", quick=()),
         Part(
-            folder="symptoms",
-            name="advise",
-            title="Which setting mends what users of an engine see?",
-            quick=("--symptoms",),
-            full=("--symptoms",),
+            *("symptoms", "advise", "Which setting mends what users of an engine see?"),
+            always=("--symptoms",),
+            quick=(),
         ),
     ),
-    "Stiff and extreme cases": (Part(folder="stability", name="stability"),),
+    "Stiff and extreme cases": (Part("stability", "stability"),),
     "Overturning": (
-        Part(folder="overturning", name="overturning"),
+        Part("overturning", "overturning"),
         Part(
-            folder="defaults",
-            name="overturning",
-            title="Where do engines predict a wrong overturning with their default settings?",
+            *("defaults", "overturning"),
+            "Where do engines predict a wrong overturning with their default settings?",
             full=("--sources", "engines:naive"),
             quick=("--quick", "--sources", "core:naive"),
         ),
     ),
-    "Other scenes": (Part(folder="scenes", name="scenes"),),
+    "Other scenes": (Part("scenes", "scenes"),),
 }
 """Title of a chapter -> its parts."""
 PARTS = tuple(part for parts in CHAPTERS.values() for part in parts)
