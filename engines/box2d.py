@@ -31,13 +31,11 @@ from engines.declaration import (
     moving_base,
 )
 from engines.parts import FLOOR_HEIGHTS, NO_JAM, Counted, fall, imported, iterations_for
+from engines.parts.reflection import returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
 from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
-
-MOST_REFLECTION = 2.0
-"""A step that is much longer than the one before gives back no more than this part."""
 
 DEEPER = 3.0
 """By how many of a pivot's reaches a free corner above is out of reach before an impact."""
@@ -45,63 +43,30 @@ DEEPER = 3.0
 MANUAL_ITERATIONS = 6
 """For velocities: of the library's own hello world."""
 
-LIBRARY_STEP_S = 1.0 / 60.0
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Box2DSettings(Counted):
-    """Settings of Box2D, by default those of its own first example.
+    """Settings of Box2D, by default those of its own first example."""
 
-    Attributes
-    ----------
-    geometry : str
-        "box": one polygon on another, or "corners": circles at the corners, each on a polygon of
-        its own.
-    friction : float
-        Coefficient between block and base.
-    iterations : int or None
-        Of the solver, for velocities.
-    position_iterations : int
-        And for positions.
-    sweeps : float or None
-        Iterations over 1/sin^2(alpha), where `iterations` are None; the manual's 6 if both are.
-    units : float or None
-        Units of length in the height of the block; None counts in metres.
-    centred : bool
-        Count heights from where the block's centre is at rest, not from the base: in single
-        precision the least heights are told apart near 0.
-    skins_below : bool
-        Lower a floor by the skins that the library gives polygons, so that it acts where it is.
-    continuous : bool
-        Whether the library looks for impacts within a step.
-    margin : float or None
-        Gap over (alpha p dt)^2 H up to which the corner about which the block turns is kept in
-        contact.
-    reflection : bool
-        Give the pivot's velocity back while the block turns about it, by the velocity of its floor.
-    sleeping : bool
-        Whether a block that has hardly moved for half a second is no longer simulated.
-    floor : str
-        How a base that moves is moved: by its "velocity", by "both" its place and its velocity, or
-        by "position" alone.
-    restitution : float
-        Coefficient of the block; of a pair the library takes the larger one.
-    """
-
+    # one polygon on another, or circles at the corners, each on a polygon of its own
     geometry: str = setting("box", names=("box", "corners"))
     friction: float = setting(1.0, least=0.0)
     iterations: int | None = setting(None, least=1)
     position_iterations: int = setting(2, least=0)
+    # iterations over 1/sin^2(alpha), where they are not given; the manual's 6 if neither is
     sweeps: float | None = setting(None, above=0.0)
     units: float | None = setting(None, above=0.0)
     centred: bool = False
+    # a floor is lowered by the skins that the library gives polygons, so that it acts where it is
     skins_below: bool = False
-    continuous: bool = True
+    continuous: bool = True  # look for impacts within a step
+    # gap over (alpha p dt)^2 H up to which the pivot is kept in contact
     margin: float | None = setting(None, above=0.0)
+    # the pivot's velocity is given back in a swing, by the velocity of its floor
     reflection: bool = False
-    sleeping: bool = True
+    sleeping: bool = True  # a block that has hardly moved for half a second is left alone
     floor: str = setting("velocity", names=("velocity", "both", "position"))
-    restitution: float = setting(0.0, least=0.0, most=1.0)
+    restitution: float = setting(0.0, least=0.0, most=1.0)  # of a pair the larger one counts
 
     def __post_init__(self) -> None:
         check(self)
@@ -117,6 +82,7 @@ class Box2DWorld:
     ) -> None:
         self._box2d: Any = imported("Box2D") if library is None else library
         s = self.settings = settings
+        self._friction = float(s.friction)  # of a pair the root of the product counts
         self._unit, self._sunk = s.unit_of(scene), s.sunk_of(scene)
         self._reach = 0.5 * (s.margin or 0.0) * fall(scene, dt_s) * self._unit
         iterations = iterations_for(scene, s.iterations, s.sweeps) or MANUAL_ITERATIONS
@@ -142,7 +108,7 @@ class Box2DWorld:
         made = self.world.CreateDynamicBody(position=place, angle=-at.theta)
         if s.geometry == "box":
             shape = box2d.b2PolygonShape(box=(x, z))
-            made.CreateFixture(shape=shape, friction=self.friction, restitution=s.restitution)
+            made.CreateFixture(shape=shape, friction=self._friction, restitution=s.restitution)
         else:
             for contact in scene.layout.contacts:
                 if contact.body == number:
@@ -151,7 +117,7 @@ class Box2DWorld:
                 low = self._lowered - z
                 shape = box2d.b2PolygonShape(vertices=[(-x, low), (x, low), (x, z), (-x, z)])
                 meets = box2d.b2Filter(categoryBits=32, maskBits=16)
-                made.CreateFixture(shape=shape, friction=self.friction, filter=meets)
+                made.CreateFixture(shape=shape, friction=self._friction, filter=meets)
         made.massData = box2d.b2MassData(
             mass=body.mass, center=(0.0, 0.0), I=body.inertia[1] * unit**2
         )
@@ -168,7 +134,7 @@ class Box2DWorld:
             bits = (1 << side, 4 << side) if on == BASE else (16, 32)
             shape = box2d.b2CircleShape(pos=((-x, x)[side], z), radius=self._reach)
             meets = box2d.b2Filter(categoryBits=bits[0], maskBits=bits[1])
-            corner = made.CreateFixture(shape=shape, friction=self.friction, filter=meets)
+            corner = made.CreateFixture(shape=shape, friction=self._friction, filter=meets)
             corner.restitution = self.settings.restitution
 
     def _new_floors(self, far: float) -> list[Any]:
@@ -178,27 +144,17 @@ class Box2DWorld:
         for number, floor in enumerate(floors):
             ground = [(-far, -far), (far, -far), (far, top), (-far, top)]
             shape = box2d.b2PolygonShape(vertices=ground)
-            fixture = floor.CreateFixture(shape=shape, friction=self.friction)
+            fixture = floor.CreateFixture(shape=shape, friction=self._friction)
             if corners:
                 meets = box2d.b2Filter(categoryBits=4 << number, maskBits=1 << number)
                 fixture.filterData = meets
         return floors
 
-    @property
-    def friction(self) -> float:
-        """Of each shape; of a pair the library takes the root of the product."""
-        return float(self.settings.friction)
-
     def step(self, step: Step) -> None:
         """Advance by a step."""
         self.world.gravity = (step.pull_x * self._unit, step.pull_z * self._unit)
-        back, before, self._dt = 0.0, self._dt, step.dt_s
-        if (
-            self.settings.reflection
-            and before
-            and step.phase in (ContactPhase.SWING, ContactPhase.APPROACH)
-        ):
-            back = min(step.dt_s / before, MOST_REFLECTION)
+        before, self._dt = self._dt, step.dt_s
+        back = returned(step, before) if self.settings.reflection else 0.0
         led = self._way == "velocity"
         at = (step.base_x - step.dt_s * step.base_velocity) * self._unit if self._way else 0.0
         felt = step.base_velocity * self._unit if self._way == "both" else 0.0
@@ -209,7 +165,7 @@ class Box2DWorld:
             else:
                 floor.position = (at, (self._reach if pivot else -self._reach) - self._sunk)
             velocity = (felt, 0.0)
-            if back and pivot and step.side:
+            if back and pivot:
                 corner = side * self._half[0], -self._half[1]
                 x, z = self.bodies[0].GetLinearVelocityFromLocalPoint(corner)
                 velocity = (felt - back * (x - self._speed), -back * z)
@@ -238,21 +194,17 @@ class Box2DWorld:
             self.world.DestroyBody(body)
 
     def _read_back(self, scene: Scene) -> str:
-        body, s, masses = self.bodies[0], self.settings, {}
+        body, s = self.bodies[0], self.settings
+        pairs: dict[str, Any] = {
+            "friction": (s.friction, body.fixtures[0].friction),
+            "restitution": (s.restitution, body.fixtures[0].restitution),
+            "sleeping": (s.sleeping, body.sleepingAllowed),
+            "continuous": (s.continuous, self.world.continuousPhysics),
+        }
         for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
-            masses[f"mass {number}"] = (wanted.mass, found.mass)
-            inertia = wanted.inertia[1] * self._unit**2
-            masses[f"inertia {number}"] = (inertia, found.inertia)
-        return disagreement(
-            {
-                **masses,
-                "friction": (s.friction, body.fixtures[0].friction),
-                "restitution": (s.restitution, body.fixtures[0].restitution),
-                "sleeping": (s.sleeping, body.sleepingAllowed),
-                "continuous": (s.continuous, self.world.continuousPhysics),
-            },
-            Precision.SINGLE.value,
-        )
+            pairs[f"mass {number}"] = wanted.mass, found.mass
+            pairs[f"inertia {number}"] = wanted.inertia[1] * self._unit**2, found.inertia
+        return disagreement(pairs, Precision.SINGLE.value)
 
 
 class Box2DStacks(Box2DWorld):
@@ -298,14 +250,11 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
     notes.listed(floors=world.floors)
     floor = settings.floor if scene.frame == "world" else ""
     x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
-    moves = {
-        "velocity": (f"linearVelocity = ({x} - floor.position.x) / DT, 0.0",),
-        "both": (
-            f"position = {x} - DT * {velocity}, floor.position.y",
-            f"linearVelocity = {velocity}, 0.0",
-        ),
-        "position": (f"position = {x} - DT * {velocity}, floor.position.y",),
-    }
+    felt = {"velocity": f"({x} - floor.position.x) / DT", "both": velocity, "position": "0.0"}
+    moves = [f"    floor.position = {x} - DT * {velocity}, floor.position.y"] * (
+        floor != "velocity"
+    )
+    moves = ["for floor in floors:", *moves, f"    floor.linearVelocity = {felt.get(floor)}, 0.0"]
     step = f"world.Step({{}}, {', '.join(map(str, world.iterations))})"
     led = f"floors[0].position.x / {unit!r}" if floor == "velocity" else "base_x"
     return Script(
@@ -317,8 +266,7 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
         build=notes.lines(),
         step=(
             f"world.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
-            *("for floor in floors:",) * bool(floor),
-            *(f"    floor.{line}" for line in moves.get(floor, ())),
+            *(moves if floor else ()),
             step.format("DT"),
         ),
         pose=("theta, rate = -bodies[number].angle, -bodies[number].angularVelocity",),
@@ -339,7 +287,6 @@ TUNED = Box2DSettings(
     sleeping=False,
     floor="both",
 )
-LANDING = replace(TUNED, reflection=True)
 
 DOCUMENTED = (
     Citation("step", "world.Step(1.0 / 60, 6, 2)", "Box2D/examples/hello.py"),
@@ -374,11 +321,7 @@ FACTORS = (
     Factor(
         "iterations",
         ("iterations", "sweeps"),
-        (
-            level("6", iterations=6),
-            level("100", iterations=100),
-            level("1000", iterations=1000),
-        ),
+        tuple(level(f"{count}", iterations=count) for count in (6, 100, 1000)),
     ),
     factor("position_iterations", level("2", position_iterations=2)),
     factor("units", level("5 a height", units=5.0), level("200 a height", units=200.0)),
@@ -411,7 +354,7 @@ RULES = (
 NAIVE = Preset(
     name="naive",
     settings=Box2DSettings(),
-    step_s=LIBRARY_STEP_S,
+    step_s=1.0 / 60.0,
     documented=DOCUMENTED,
     frame="world",
     own={"friction": 0.2},
@@ -433,15 +376,10 @@ ENGINE = Engine(
             iterations=8,
             position_iterations=3,
         ),
-        Preset(
-            name="fixed",
-            settings=TUNED,
-            step=1e-3,
-            helped_by={Help.MARGIN: {"margin": None}},
-        ),
+        Preset(name="fixed", settings=TUNED, step=1e-3, helped_by={Help.MARGIN: {"margin": None}}),
         Preset(
             name="landing",
-            settings=LANDING,
+            settings=replace(TUNED, reflection=True),
             stepping=Stepping.LANDING,
             stacked={"sweeps": 200.0},
             stacks=Box2DStacks,

@@ -29,6 +29,7 @@ from engines.declaration import (
     moving_base,
 )
 from engines.parts import FLOOR_HEIGHTS, NO_JAM, fall, imported, iterations_for
+from engines.parts.reflection import returned
 from engines.run.export import Notes, Script, constant, scaled
 from engines.scene import BASE, Body, Scene
 from engines.settings import check, disagreement, setting
@@ -37,60 +38,31 @@ from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
 UNIT_S = 1e-3
 """Step [s] that the library is told where the positions are not its own to move."""
 
-MOST_REFLECTION = 2.0
-"""A step that is much longer than the one before gives back no more than this part."""
-
 LEVEL = 1e-9
 """A block that leans by less [rad] stands on both corners: held to the margin while it falls, the
 free corner would come to rest above the base."""
 
-LIBRARY_STEP_S = 0.02
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PymunkSettings:
-    """Settings of pymunk; None leaves the library's default.
+    """Settings of pymunk; None leaves the library's default."""
 
-    Attributes
-    ----------
-    geometry : str
-        "box": one polygon on one segment, or "corners": points at the corners, each on a polygon of
-        its own.
-    friction : float
-        Coefficient between block and base.
-    iterations, slop, bias : optional
-        `Space.iterations`, `collision_slop` [units of length] and `collision_bias`.
-    sweeps : float or None
-        Iterations over 1/sin^2(alpha), where `iterations` are None.
-    positions : bool
-        Move the positions after the velocities, by the adapter.
-    margin : float or None
-        Gap over (alpha p dt)^2 H up to which the corner about which the block turns is kept in
-        contact; slop is then beyond it.
-    reflection : bool
-        Give the pivot's velocity back while the block turns about it, by elasticity and surface
-        velocity.
-    floor : str
-        How a base that moves is moved: by its "velocity", by "both" its place and its velocity, or
-        by "position" alone.
-    unit : float
-        Units of length in a metre.
-    restitution, base_restitution : float
-        Elasticity of the corners (a box has none), and of the base, with which the library
-        multiplies it.
-    """
-
+    # one polygon on one segment, or points at the corners, each on a polygon of its own
     geometry: str = setting("box", names=("box", "corners"))
     friction: float = setting(1.0, least=0.0)
     iterations: int | None = setting(None, least=1)
-    slop: float | None = setting(None, least=0.0)
+    slop: float | None = setting(None, least=0.0)  # units of length
     bias: float | None = setting(None, least=0.0, most=1.0)
+    # iterations over 1/sin^2(alpha), where they are not given
     sweeps: float | None = setting(None, above=0.0)
-    positions: bool = False
+    positions: bool = False  # moved after the velocities, by the adapter
+    # gap over (alpha p dt)^2 H up to which the pivot is kept in contact; slop is then beyond it
     margin: float | None = setting(None, above=0.0)
+    # the pivot's velocity is given back in a swing, by elasticity and surface velocity
     reflection: bool = False
     floor: str = setting("velocity", names=("velocity", "both", "position"))
-    unit: float = setting(1.0, above=0.0)
+    unit: float = setting(1.0, above=0.0)  # units of length in a metre
+    # elasticity of the corners (a box has none) and of the base: the product counts
     restitution: float = setting(0.0, least=0.0, most=1.0)
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
@@ -112,8 +84,15 @@ class PymunkWorld:
         self.margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
         # free corners of bodies that rest on others must meet them together
         self._together = settings.positions and scene.stacked
-        self._iterations = iterations_for(scene, settings.iterations, settings.sweeps)
-        self.space = self._new_space()
+        self.space, slop = self._pymunk.Space(), settings.slop
+        self._wanted = {
+            "iterations": iterations_for(scene, settings.iterations, settings.sweeps),
+            "collision_slop": slop if settings.margin is None else 10.0 * self.margin,
+            "collision_bias": settings.bias,
+        }
+        for name, value in self._wanted.items():
+            if value is not None:
+                setattr(self.space, name, value)
         self.base = self._pymunk.Body(body_type=self._pymunk.Body.KINEMATIC)
         self.bodies = [self._new_body(body) for body in scene.bodies]
         self.pivots: list[float] = []
@@ -130,16 +109,6 @@ class PymunkWorld:
             body.position_func = stay
         self._state = np.zeros((len(self.bodies), len(Pose._fields)))
         self._fault = self._read_back(scene)
-
-    def _new_space(self) -> Any:
-        s, space = self.settings, self._pymunk.Space()
-        if self._iterations is not None:
-            space.iterations = self._iterations
-        if s.slop is not None or s.margin is not None:
-            space.collision_slop = s.slop if s.margin is None else 10.0 * self.margin
-        if s.bias is not None:
-            space.collision_bias = s.bias
-        return space
 
     def _new_body(self, body: Body) -> Any:
         unit, at = self._unit, body.at
@@ -203,9 +172,8 @@ class PymunkWorld:
 
     def _hold(self, step: Step) -> None:
         """Keep the pivot in contact, and give its velocity back while the block turns about it."""
-        s, before, self._dt, back = self.settings, self._dt, step.dt_s, 0.0
-        if s.reflection and before and step.phase in (ContactPhase.SWING, ContactPhase.APPROACH):
-            back = min(step.dt_s / before, MOST_REFLECTION)
+        s, before, self._dt = self.settings, self._dt, step.dt_s
+        back = returned(step, before) if s.reflection else 0.0
         bounce = s.restitution * s.base_restitution
         # equal steps do not say about which corner
         about = 0.0 if step.phase is ContactPhase.REST else step.side or -self.bodies[0].angle
@@ -217,11 +185,11 @@ class PymunkWorld:
         for side, at, corner, floor in pairs:
             pivot = side * about >= -LEVEL
             floor.unsafe_set_radius(self.margin * (held if pivot else free))
-            returned = back if pivot and step.side else 0.0
-            corner.elasticity, floor.elasticity, slip = 1.0, max(returned, bounce), 0.0
-            if returned:
+            part = back if pivot else 0.0
+            corner.elasticity, floor.elasticity, slip = 1.0, max(part, bounce), 0.0
+            if part:
                 slip = corner.body.velocity_at_local_point(at)[0] - floor.body.velocity[0]
-            corner.surface_velocity = (returned * slip, 0.0)
+            corner.surface_velocity = (part * slip, 0.0)
 
     def state(self) -> FloatArray:
         """Read the poses back; a base that the library moves is a step ahead, and carries then."""
@@ -240,19 +208,14 @@ class PymunkWorld:
         self.space.remove(*self.space.shapes, *self.space.bodies)
 
     def _read_back(self, scene: Scene) -> str:
-        s, space, masses = self.settings, self.space, {}
+        friction = self.corners[0].friction * self.floors[0].friction
+        pairs: dict[str, Any] = {"friction": (self.settings.friction, friction)}
+        for name, value in self._wanted.items():
+            pairs[name] = value, getattr(self.space, name)
         for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
-            masses[f"mass {number}"] = (wanted.mass, found.mass)
-            masses[f"moment {number}"] = (wanted.inertia[1] * self._unit**2, found.moment)
-        return disagreement(
-            {
-                **masses,
-                "friction": (s.friction, self.corners[0].friction * self.floors[0].friction),
-                "iterations": (self._iterations, space.iterations),
-                "slop": (None if s.margin else s.slop, space.collision_slop),
-                "bias": (s.bias, space.collision_bias),
-            }
-        )
+            pairs[f"mass {number}"] = wanted.mass, found.mass
+            pairs[f"moment {number}"] = wanted.inertia[1] * self._unit**2, found.moment
+        return disagreement(pairs)
 
 
 def boxed(body: Body, unit: float, deeper: float = 0.0) -> list[tuple[float, float]]:
@@ -280,8 +243,10 @@ def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
         hold.append(f"for side, floor in zip({world.pivots}, floors):")
         hold.append(f"    floor.unsafe_set_radius({held})")
     moves = {"velocity": f"({x} - base.position.x) / DT", "both": velocity}
-    under = " - base.position.x" * bool(floor) + " + DT * base.velocity.x" * (floor == "velocity")
-    place = f"bodies[0].position.x{under}"  # a base that the library moves is a step ahead
+    under = " - base.position.x" * bool(floor)
+    if floor == "velocity":  # a base that the library moves is a step ahead
+        under += " + DT * base.velocity.x"
+    place = f"bodies[0].position.x{under}"
     return Script(
         imports=("import pymunk", *("stay = lambda body, dt: None",) * (floor != "velocity")),
         settings=(
@@ -303,14 +268,8 @@ def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
 
 
 TUNED = PymunkSettings(
-    geometry="corners",
-    friction=NO_JAM,
-    sweeps=20.0,
-    bias=0.0,
-    margin=10.0,
-    floor="both",
+    geometry="corners", friction=NO_JAM, sweeps=20.0, bias=0.0, margin=10.0, floor="both"
 )
-LANDING = replace(TUNED, positions=True, reflection=True)
 
 DOCUMENTED = (
     Citation("step", "space.step(0.02)", "README, the first example"),
@@ -346,11 +305,7 @@ RECOMMENDED = (
 FACTORS = (
     factor("geometry"),
     factor("positions", level("moved by the adapter", positions=True), by_default=False),
-    Factor(
-        "iterations",
-        ("iterations", "sweeps"),
-        (level("100", iterations=100),),
-    ),
+    Factor("iterations", ("iterations", "sweeps"), (level("100", iterations=100),)),
     factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
     factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
     factor("unit", level("the README's 100 in a metre", ("naive",), unit=100.0)),
@@ -358,7 +313,6 @@ FACTORS = (
     factor("friction", level("5", friction=5.0, trap="Painlevé's paradox: the pivot jams")),
     moving_base("both", "velocity", "position"),
 )
-
 
 RULES = (
     Rule(
@@ -379,7 +333,7 @@ RULES = (
 NAIVE = Preset(
     name="naive",
     settings=PymunkSettings(),
-    step_s=LIBRARY_STEP_S,
+    step_s=0.02,
     documented=DOCUMENTED,
     frame="world",
     own={"friction": 0.0},
@@ -396,16 +350,13 @@ ENGINE = Engine(
     presets=(
         NAIVE,
         NAIVE.at_rest(),
-        NAIVE.recommended(*RECOMMENDED, step_s=LIBRARY_STEP_S / 10.0, slop=1e-3),
+        NAIVE.recommended(*RECOMMENDED, step_s=0.002, slop=1e-3),
         Preset(
-            name="fixed",
-            settings=TUNED,
-            step=2.5e-4,
-            helped_by={Help.MARGIN: {"margin": None}},
+            name="fixed", settings=TUNED, step=2.5e-4, helped_by={Help.MARGIN: {"margin": None}}
         ),
         Preset(
             name="landing",
-            settings=LANDING,
+            settings=replace(TUNED, positions=True, reflection=True),
             stepping=Stepping.LANDING,
             stacked={"sweeps": 400.0},  # the heavier what rests on others, the slower they converge
             helped_by={
