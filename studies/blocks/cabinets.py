@@ -2,20 +2,18 @@
 
 import csv
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from analytic.block import RigidBlock
 from analytic.slide import SlidingBlock
-from analytic.text import finite_number, lines_of, shown
+from analytic.text import is_number, lines_of, shown
 from studies.cases.refusal import BadInputError
 from studies.kit.scene_options import MOST_M
 
 NEEDED = ("name", "width", "height")
 COLUMNS = (*NEEDED, "friction", "tilt")
-MOST_LETTERS = 300
-"""Of a name."""
 SHOWN = 10
 """Bad lines that a refusal names; it is one line."""
 
@@ -48,47 +46,46 @@ def read_cabinets(path: Path) -> list[Cabinet]:
     """Read a list, separated by commas, semicolons or tabs; BadInputError names every bad line."""
     found, bad = dict[str, Cabinet](), list[str]()
     try:
-        heads, rows = _table(lines_of(path))
+        for line, cells in _rows(lines_of(path)):
+            try:
+                cabinet = _cabinet(cells)
+                if cabinet.name in found:
+                    raise _bad("name", cabinet.name, "each block's own")
+                found[cabinet.name] = cabinet
+            except ValueError as error:
+                bad.append(f"line {line}: {error}")
+        if not found and not bad:
+            raise ValueError("it has no rows; it must have a block a line below the names")
     except (ValueError, csv.Error) as error:
-        raise BadInputError(f"the list is {str(path)!r}; {error}") from error
-    for line, words in rows:
-        try:
-            if len(words) != len(heads):
-                raise _bad("the number of values", str(len(words)), f"{len(heads)}, one a column")
-            cabinet = _cabinet(dict(zip(heads, words, strict=True)))
-            if cabinet.name in found:
-                raise _bad("name", cabinet.name, "each block's own")
-            found[cabinet.name] = cabinet
-        except ValueError as error:
-            bad.append(f"line {line}: {error}")
+        bad.append(str(error))
     if bad:
         more = [f"{len(bad) - SHOWN} more lines cannot be used"] if len(bad) > SHOWN else []
         raise BadInputError(f"the list is {str(path)!r}; {'; '.join([*bad[:SHOWN], *more])}")
     return [*found.values()]
 
 
-def _table(lines: Sequence[str]) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Return the names of the columns, and the rows that are not empty with their lines."""
+def _rows(lines: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
+    """Yield the cells of each row by their columns, and the line that it ends on."""
     head = next((line for line in lines if line.strip()), "")
     separator = max((",", ";", "\t"), key=head.count)
     ended = (f"{line}\n" for line in lines)  # a name may hold the end of a line
     reader = csv.reader(ended, delimiter=separator, skipinitialspace=True, strict=True)
-    rows = [(reader.line_num, [word.strip() for word in row]) for row in reader if any(row)]
-    heads = [name.lower() for name in rows[0][1]] if rows else []
+    rows = ([word.strip() for word in row] for row in reader if any(row))
+    heads = [name.lower() for name in next(rows, [])]
     if not {*NEEDED} <= {*heads} <= {*COLUMNS} or len(heads) > len({*heads}):
         words = "name, width and height, in metres, and may be friction and tilt, each once"
         raise ValueError(f"it has the columns {', '.join(heads)!r}; they must be {words}")
-    if len(rows) < 2:
-        raise ValueError("it has no rows; it must have a block a line below the names")
-    return heads, rows[1:]
+    for row in rows:
+        many = len(row) != len(heads)
+        yield reader.line_num, {} if many else dict(zip(heads, row, strict=True))
 
 
 def _cabinet(cells: Mapping[str, str]) -> Cabinet:
     """Return the block of a line; ValueError names its first bad value."""
-    name = cells["name"]
-    if not (0 < len(name) <= MOST_LETTERS and name.isprintable()):
-        unseen = "without ends of lines, tabs, marks of direction and the like"
-        raise _bad("name", name, f"1 to {MOST_LETTERS} letters, {unseen}")
+    if not cells:
+        raise ValueError("it must have a value for each column")
+    if not (0 < len(name := cells["name"]) <= 300 and name.isprintable()):
+        raise _bad("name", name, "1 to 300 letters, without ends of lines, tabs and the like")
     width, height = (_number(cells, name, 1e-3, MOST_M, " m") for name in NEEDED[1:])
     lying = math.nextafter(0.5 * math.pi / math.atan2(width, height), 0.0)
     # no base is smoother
@@ -101,10 +98,7 @@ def _number(
     cells: Mapping[str, str], column: str, low: float, high: float, unit: str = ""
 ) -> float:
     word = cells[column]
-    try:
-        value = finite_number(word)
-    except ValueError:
-        value = math.nan
+    value = float(word) if is_number(word) else math.nan
     if not low <= value <= high:
         meant = f" ({1e-3 * value:g} for {value:g} mm?)" if unit == " m" and value > high else ""
         point = ", with a decimal point" if "," in word else ""

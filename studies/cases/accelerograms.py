@@ -1,7 +1,6 @@
 """Recorded accelerograms as a command takes them: read, corrected, refused in one line."""
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -22,7 +21,7 @@ def read_record(
 ) -> Record:
     """Read a recorded ground acceleration [m/s2], as `Record.read` does, and correct it.
 
-    A record that cannot be read, or is nothing but its trend, is refused.
+    A record that cannot be read, or is zero or nothing but its trend, is refused.
     """
     try:
         record = Record.read(path, units, dt)
@@ -30,24 +29,14 @@ def read_record(
         problem = re.sub(r"; units(?= must)", "; --units", str(error).removeprefix("path"))
         problem = re.sub(r"; dt(?=,| must not)", "; --record-dt", problem)
         raise BadInputError(f"--record{problem}") from error
-    if baseline is None or baseline == "none":
-        return record
     try:
-        return record.detrended(baseline)
+        if baseline == "constant" or baseline == "linear":
+            record = record.detrended(baseline)
     except ValueError as error:
         raise BadInputError(f"--record is {str(path)!r}; {error}") from error
-
-
-def recorded(
-    paths: Sequence[Path], units: str | None, baseline: Baseline | None, dt: float | None = None
-) -> list[Record]:
-    """Read records in the order of their paths; refuse also one that is zero throughout."""
-    records = [read_record(path, units, baseline, dt) for path in paths]
-    for path, record in zip(paths, records, strict=True):
-        if record.peak == 0.0:
-            words = "it is zero throughout, and must not be"
-            raise BadInputError(f"--record is {str(path)!r}; {words}")
-    return records
+    if record.peak == 0.0:
+        raise BadInputError(f"--record is {str(path)!r}; it is zero throughout, and must not be")
+    return record
 
 
 def baseline_note(record: Record, baseline: str | None) -> str:

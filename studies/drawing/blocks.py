@@ -33,10 +33,12 @@ def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Fig
     fonts = families([title, *names, *records])
     with rc_context({"font.family": fonts, "text.parse_math": False}):
         drawing, (axes,) = sheet((8.0, 1.9 + len(names) * max(0.21, 0.1 * len(records))))
-        handles = [
-            _draw_record(axes, lines[lines["record"] == record], names, place, len(records))
-            for place, record in enumerate(records)
-        ]
+        key_of = dict[int, Line2D]()
+        for line in lines[lines["name"].isin(names)].to_dict("records"):
+            place = records.index(line["record"])
+            shift = 0.6 * ((place + 0.5) / len(records) - 0.5)
+            found = _draw_line(axes, line, names.index(line["name"]) + shift, place)
+            key_of.setdefault(place, found)
         for scale in scales:
             asked = axes.axvline(scale, label="scale asked for", zorder=0.5, color="#666666",
                                  linewidth=0.8, linestyle=(0, (5, 4)))  # fmt: skip
@@ -47,27 +49,22 @@ def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Fig
         axes.set_yticks(range(len(names)), map(_short, names), fontsize=8)
         axes.grid(axis="y", alpha=0.2)
         axes.set_title(drawable(title) + kept, fontsize=10, wrap=True)
+        handles = [key_of[place] for place in sorted(key_of)]
         key(drawing, [*handles, asked], min(len(handles) + 1, 4), 10.0)
     return drawing
 
 
-def _draw_record(
-    axes: Axes, lines: pd.DataFrame, names: Sequence[str], place: int, of: int
-) -> Line2D:
-    """Draw the factors of a record, and return what stands for it in the key."""
+def _draw_line(axes: Axes, line: dict[Any, Any], level: float, place: int) -> Line2D:
+    """Draw the factors of a block under a record, and return what stands for that in the key."""
     colour, marker = look_at(place)
     look: dict[str, Any] = {"color": colour, "marker": marker, "markersize": 4.5}
-    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
-    for line in lines[lines["name"].isin(names)].to_dict("records"):
-        level, end = names.index(line["name"]) + 0.6 * ((place + 0.5) / of - 0.5), line["margin"]
-        if words := line["no_margin"] or ("none found" if np.isinf(end) else ""):
-            axes.annotate(f"{words} ", (1.0, level), xycoords=("axes fraction", "data"), ha="right",
-                          va="center", fontsize=7, color=colour, bbox=box)  # fmt: skip
-        elif end > 0.0:
-            axes.plot(end, level, linestyle="none", **look)
-            if line["lifts"] > 0.0:
-                axes.plot([line["lifts"], end], [level, level], color=colour, lw=1.2, alpha=0.5)
-    label = f"{_short(lines['record'].iloc[0])}: lifts to overturns"
+    if words := line["no_margin"] or ("none found" if np.isinf(line["margin"]) else ""):
+        axes.annotate(f"{words} ", (1.0, level), xycoords=("axes fraction", "data"), ha="right",
+                      va="center", fontsize=7, color=colour)  # fmt: skip
+    elif line["margin"] > 0.0:
+        start = line["lifts"] or line["margin"]
+        axes.plot([start, line["margin"]], [level] * 2, markevery=[1], linewidth=1.2, **look)
+    label = f"{_short(line['record'])}: lifts to overturns"
     return Line2D([], [], linewidth=1.2, label=label, **look)
 
 

@@ -10,11 +10,11 @@ from commanding import refused
 from given import noise
 from records import write_record
 
-from analytic import Outcome, Record, RigidBlock, SlidingBlock, simulate
+from analytic import Outcome, Record, RigidBlock, simulate
 from analytic.criteria import overturning_velocity
 from studies import blocks
 from studies.__main__ import run
-from studies.blocks.strength import BEYOND, WIDTH, strength
+from studies.blocks.strength import WIDTH, strength
 from studies.kit.tables import read_table
 
 REST = (0.0, 0.0)
@@ -48,10 +48,6 @@ def test_each_block_has_its_answers_and_its_margin(place, capsys):
         "B": ["slid", "slides first", "slid"],
         "C": ["slides first", "slides first", "rocked"],
     }
-    slips = simulate(SlidingBlock(width=0.45, height=1.9, friction=0.2), SHAKEN.scaled(-1.5)).slips
-    assert strong.loc[("B", "exact"), "slid_m"] == pytest.approx(
-        np.abs(np.cumsum(slips)).max(), rel=1e-6
-    )
     why = {name: set(group) for name, group in rows.groupby("name")["no_margin"]}
     assert why == {"A": {""}, "B": {"slides"}, "C": {"slides first"}, "nan": {""}}
     assert (rows["margin"].isna() == (rows["no_margin"] != "")).all()
@@ -59,7 +55,7 @@ def test_each_block_has_its_answers_and_its_margin(place, capsys):
     assert strong.loc[("A", "exact"), "peak_ratio"] == exact.peak_ratio
     assert (strong.loc["A", "friction_needed"] == exact.friction_needed).all()
     page = (place / "out" / "blocks.html").read_text()
-    assert page.count("slides first") > 3 and "data:image/png" in page
+    assert page.count("slides first") > 2 and "data:image/png" in page
     before = (place / "out" / "blocks.csv").read_bytes()
     run(asked)  # computes nothing
     assert (place / "out" / "blocks.csv").read_bytes() == before
@@ -94,7 +90,7 @@ BAD = [
     (HEAD + "B\u202eC,0.5,1.5,,\n", r"line 2: name is 'B\u202eC'; it must be 1 to 300 letters"),
     (HEAD + "A,0.5,1.5,,5\n", "line 2: tilt is '5'; it must be from -4.88203 to 4.88203"),
     (HEAD + "A,0.5,1.5,,\n\nA,0.4,1.5,,\n", "line 4: name is 'A'; it must be each block's own"),
-    (HEAD + "A,0.5\n", "line 2: the number of values is '2'; it must be 5, one a column"),
+    (HEAD + "A,0.5\n", "line 2: it must have a value for each column"),
     (HEAD + "A,0,1,,\nB,1,1,,\nC,1,x,,\n", "line 2: width is '0'; .*; line 4: height is 'x'"),
     (HEAD, "it has no rows"),
     ("", "it has the columns ''; they must be name, width and height"),
@@ -111,17 +107,8 @@ def test_a_bad_list_is_one_line(text, problem, place, capsys):
     assert not (place / "out").exists()
 
 
-@pytest.mark.parametrize(
-    ("options", "named"),
-    [
-        (["--scale", "1e307"], "--record X.AT2 times --scale 1e+307: "),
-        (["--scale", "1", "1"], "--scale names 1.0 twice"),
-        (["--record", "X.AT2", "./X.AT2"], "--record names 'X.AT2' twice"),
-        (["--sources", "houser"], "'houser'"),
-    ],
-)
-def test_bad_options_are_one_line(options, named, place, capsys):
-    refused(capsys, [*ASKED, *options], named)
+def test_a_factor_beyond_floating_point_is_one_line(place, capsys):
+    refused(capsys, [*ASKED, "--scale", "1e307"], "--record X.AT2 times --scale 1e+307: ")
 
 
 @pytest.mark.parametrize(("width", "height"), [(0.5, 1.5), (0.4, 2.0)])
@@ -136,13 +123,9 @@ def test_the_margin_is_the_first_factor_of_the_grid_that_overturns(width, height
     onset = 9.81 * width / height / SHAKEN.peak
     assert found.lifts == pytest.approx(onset, rel=1e-14)
     assert falls(found.margin) and not falls(found.margin * (1.0 - 1.01 * WIDTH))
-    factors = onset * 1.01 ** np.arange(1, 1 + math.log(BEYOND * found.margin / onset) / 0.0099)
-    answers = {factor: falls(factor) for factor in factors if factor <= BEYOND * found.margin}
-    assert not any(fell for factor, fell in answers.items() if factor < found.margin)
-    runs = [[float(end) for end in words.split("-")] for words in found.islands.split()]
-    for factor, fell in answers.items():
-        inside = any(run[0] * 0.9994 <= factor <= run[-1] * 1.0006 for run in runs)
-        assert inside == (not fell and factor > found.margin)
+    factors = onset * 1.01 ** np.arange(1, math.log(found.margin / onset) / math.log(1.01))
+    assert not any(map(falls, factors))
+    assert found.margin_friction == simulate(block, SHAKEN.scaled(found.margin)).friction_needed
 
 
 def test_margins_that_are_known():
@@ -159,10 +142,9 @@ def test_margins_that_are_known():
 
 
 def test_a_scale_that_overturns_in_a_sliver_counts_and_a_failed_search_has_no_margin():
-    facts = dict.fromkeys(blocks.FACTS, 0.3)
-    case = {"name": "A", "record": "X", "outcome": "rocked", "source": "exact", "slips": 0, **facts}
-    case |= {"friction": None, "tilt": None, "peak_ratio": 0.5, "baseline": ""}
-    found = {"lifts": 0.5, "margin": 1.2, "margin_friction": 0.4, "islands": ""}
+    case = {"name": "A", "record": "X", "outcome": "rocked", "source": "exact", "peak_ratio": 0.5}
+    case |= {"friction_needed": 0.3}
+    found = {"lifts": 0.5, "margin": 1.2, "margin_friction": 0.4}
     rows = [{**case, "scale": 0.9, "outcome": "overturned"}, {**case, "scale": 1.0},
             {**case, "scale": 0.0, "outcome": "found", **found}]  # fmt: skip
     table = blocks.tabulate(pd.DataFrame(rows))["blocks"]
