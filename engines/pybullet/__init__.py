@@ -1,19 +1,195 @@
-"""PyBullet: what it can do, how it is used, what its users should know first."""
+"""PyBullet: its presets, where they come from, and what the studies try of its settings."""
 
-from engines.declaration import Engine, Help, Preset, Stepping
-from engines.pybullet.build import BulletWorld
-from engines.pybullet.script import script
-from engines.pybullet.settings import (
-    DOCUMENTED,
-    FACTORS,
-    LANDING,
-    LIBRARY_STEP_S,
-    RECOMMENDED,
-    RULES,
-    STACKED,
-    TUNED,
-    BulletSettings,
+from dataclasses import replace
+from typing import Any
+
+from engines.declaration import (
+    AS_BEST,
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    Citation,
+    Engine,
+    Factor,
+    Help,
+    Preset,
+    Rule,
+    Stepping,
+    factor,
+    level,
+    moving_base,
 )
+from engines.pybullet.build import (
+    LARGEST_FRICTION,
+    LIBRARY_STEP_S,
+    BulletSettings,
+    BulletWorld,
+    script,
+)
+
+SWEEPS = 25.0
+"""Twice what a solver needs that leaves no more than a rounding of the impulses at two corners."""
+
+TUNED = BulletSettings(
+    geometry="corners",
+    planar=True,
+    multibody=False,
+    friction=LARGEST_FRICTION,
+    exact_inertia=True,
+    damping=0.0,
+    sweeps=SWEEPS,
+    residual=1e-20,
+    contact_erp=1.0,
+    friction_erp=0.0,
+    contact_slop=0.0,
+    floor="velocity",
+)
+
+LANDING = replace(
+    TUNED, residual=1e-32, friction_erp=1.0, friction_anchor=True, gap_by_step=True, by_phase=True
+)
+
+STACKED: dict[str, Any] = {"geometry": "box", "base_geometry": "box", "iterations": 250}
+"""Where bodies rest on others: corner spheres under a body that moves throw it."""
+
+GUIDE = "PyBullet Quickstart Guide, 2016-2022"
+READ = "of pybullet 3.2.7"
+SERVER = "PhysicsServerCommandProcessor.cpp"
+EXAMPLE = "pybullet_examples/constraint.py, pybullet_data/cube_small.urdf"
+
+DOCUMENTED = (
+    Citation("step", "240 Hz: best to leave it to the default", f"{GUIDE}, setTimeStep"),
+    Citation("iterations", "numSolverIterations 50", f"getPhysicsEngineParameters {READ}"),
+    Citation("residual", "solverResidualThreshold 1e-7", f"{GUIDE}, setPhysicsEngineParameter"),
+    Citation("kept gap", "contactBreakingThreshold 0.02", f"{GUIDE}, setPhysicsEngineParameter"),
+    Citation("friction cone", "cone is default", f"{GUIDE}, setPhysicsEngineParameter"),
+    Citation("friction anchor", "disabled by default", f"{GUIDE}, changeDynamics"),
+    Citation("damping", "linear and angular, 0.04 by default", f"{GUIDE}, changeDynamics"),
+    Citation(
+        "friction",
+        "0.5, of a pair the product: 0.5 on an example's floor of 1, 0.25 on another; here 1.0",
+        f"getDynamicsInfo, btManifoldResult.cpp {READ}",
+    ),
+    Citation("contact", "contactERP 0.08, contactSlop 1e-5", f"{SERVER} {READ}"),
+    Citation("restitution", "0.0", f"getDynamicsInfo {READ}"),
+    Citation("sleeping", "off but for URDF_ENABLE_SLEEPING", f"{GUIDE}, changeDynamics"),
+    Citation("floor", "better constraints than position or velocity", f"{GUIDE}, createConstraint"),
+    Citation("floor", "JOINT_FIXED, changeConstraint, maxForce 50 on 0.1 kg", f"{EXAMPLE} {READ}"),
+    Citation("floor", "of what it is off, erp 0.2 a step", f"btContactSolverInfo.h {READ}"),
+    Citation(
+        "without effect",
+        "frictionERP 0.2, warmStartingFactor 0.1, restitutionVelocityThreshold 0.2, "
+        "collisionMargin 0.001, speeds up to 100",
+        f"{SERVER}, btContactSolverInfo.h, btMultiBody.cpp {READ}",
+    ),
+)
+"""Where the library's documentation, or the library itself, says what its defaults decide."""
+
+RECOMMENDED = (
+    Citation("iterations", "best left at 50; more, for accuracy", "bullet3 issue 3081, its author"),
+    Citation("iterations", "150, its own environment", "kuka_diverse_object_gym_env.py"),
+    Citation("damping", "0, its own environments", "cartpole_bullet.py, quadruped_base.py"),
+)
+"""What it recommends for accurate contact: no text gives a number, its environments do."""
+
+DRAG = "drag that nobody asked for"
+SLIDES = "held out of its margin with contact ERP 1, a hull slides off its pivot"
+SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"
+ANCHORED = "an anchor kept through an impact drags the pivot along"
+SPHERES = "the inertia of the corner spheres instead of the block's"
+HULL_ON_BOX: dict[str, Any] = {"geometry": "hull", "base_geometry": "box"}
+
+FACTORS = (
+    factor("solver", level("PGS", BOTH, solver="PGS"), level("Dantzig", BOTH, solver="Dantzig")),
+    factor(
+        "residual",
+        level("1e-5", residual=1e-5),
+        level("1e-12", residual=1e-12),
+        name="residual threshold",
+    ),
+    Factor(
+        "iterations",
+        ("iterations", "sweeps"),
+        (level("5", iterations=5), level("1000", iterations=1000)),
+    ),
+    factor("contact_erp", level("0", contact_erp=0.0), name="contact ERP"),
+    factor("friction_erp", level("1", friction_erp=1.0), name="friction ERP"),
+    factor(
+        "constraint_erp",
+        level("0.8", (DEFAULT,), constraint_erp=0.8),
+        name="constraint ERP",
+        by_default=False,
+    ),
+    factor("contact_slop", level("1 mm", contact_slop=1e-3)),
+    factor(
+        "friction_anchor",
+        level("on", BOTH, friction_anchor=True),
+        level("on, friction ERP 1", trap=ANCHORED, friction_anchor=True, friction_erp=1.0),
+    ),
+    factor("breaking_threshold", level("1e-5 R", breaking_threshold=1e-5), name="kept gap"),
+    Factor(
+        "yielding contact",
+        ("contact_stiffness", "contact_damping"),
+        (
+            level("k 1e4, c 1e2", contact_stiffness=1e4, contact_damping=1e2),
+            level("k 1e4, c 1e3", contact_stiffness=1e4, contact_damping=1e3),
+            level("k 1e6, c 1e5", BOTH, contact_stiffness=1e6, contact_damping=1e5),
+        ),
+    ),
+    factor("damping", level("0.04, a multibody's default", trap=DRAG, damping=0.04)),
+    factor(
+        "multibody",
+        level("reduced, default damping", trap=DRAG, multibody=True, damping=None),
+        name="coordinates",
+    ),
+    factor("exact_inertia", name="inertia", traps={BEST: SPHERES}),
+    Factor(
+        "geometry",
+        ("geometry", "planar", "exact_inertia"),
+        (
+            level("hull on plane", trap=SLIDES, geometry="hull"),
+            level("hull on plane, default ERP", geometry="hull", contact_erp=None),
+            level("hull on plane", (DEFAULT,), geometry="hull"),
+            level("2 corners on box", base_geometry="box"),
+            level("box on box", BOTH, geometry="box", base_geometry="box"),
+            level("hull on box", trap=SLIDES, **HULL_ON_BOX),
+            level("hull on box", (DEFAULT,), **HULL_ON_BOX),
+            level("4 corners on plane", BOTH, geometry="corners", planar=False, exact_inertia=True),
+            level("corners of B/500", corner_radius=2e-3),
+            level("box, separating axes", geometry="box", separating_axis=True),
+        ),
+    ),
+    factor("split_impulse", level("on", split_impulse=True), level("off", split_impulse=False)),
+    factor(
+        "cone_friction",
+        level("cone", BOTH, cone_friction=True),
+        level("pyramid", BOTH, cone_friction=False),
+        name="friction cone",
+    ),
+    factor("warm_starting", level("off", warm_starting=0.0), level("0.95", warm_starting=0.95)),
+    factor("friction", level("0.5, the library's own", (DEFAULT,), SMOOTH, friction=0.5)),
+    moving_base("velocity", "constraint", "position"),
+)
+"""What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Turn drag off, `changeDynamics(linearDamping=0, angularDamping=0)`: it is 0.04",
+        *(DEFAULT, "damping", AS_BEST),
+        kept=True,
+    ),
+    Rule(
+        "Give a body made of small shapes its own `localInertiaDiagonal`: it is that of the shapes",
+        *(BEST, "inertia", BY_DEFAULT),
+    ),
+    Rule(
+        "Build a box as a box: a convex mesh is held by another algorithm",
+        *(DEFAULT, "geometry", "hull on plane"),
+    ),
+)
+"""What its users should know first."""
+
 
 NAIVE = Preset(
     name="naive",

@@ -1,38 +1,61 @@
-"""PyBullet: how a scene is built, set, read back and stepped."""
+"""PyBullet: its settings, and how a scene is built, set, read back and stepped."""
 
 import contextlib
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from threading import Lock
 from typing import Any
 
 import numpy as np
 
-from engines.parts import imported, silence
-from engines.pybullet.calls import (
-    UPRIGHT,
-    Call,
-    Constant,
-    aloft,
-    base_body,
-    base_call,
-    base_place,
-    base_shape,
-    body_call,
-    body_of,
-    body_shape,
-    constrained,
-    engine_call,
-    hold_call,
-    most_force,
+from engines.parts import (
+    floor_half_size,
+    half_size,
+    hull_points,
+    imported,
+    iterations_for,
+    silence,
+    touching_spheres,
 )
-from engines.pybullet.settings import LIBRARY_BREAKING_THRESHOLD, LIBRARY_STEP_S, BulletSettings
-from engines.scene import Scene
-from engines.settings import disagreement
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
+from engines.run.export import Notes
+from engines.scene import GEOMETRIES, Scene
+from engines.settings import check, disagreement, given, setting
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
 
-RENDERER = "tinyRendererPlugin"
-"""The library's name of what draws, or would."""
+LIBRARY_STEP_S = 1.0 / 240.0
+"""The library's own time step [s]."""
+
+LIBRARY_BREAKING_THRESHOLD = 0.02
+"""The library's own gap, over a body's size, up to which it keeps a contact."""
+
+SOLVERS = {
+    "sequential impulse": "CONSTRAINT_SOLVER_LCP_SI",
+    "PGS": "CONSTRAINT_SOLVER_LCP_PGS",
+    "Dantzig": "CONSTRAINT_SOLVER_LCP_DANTZIG",
+}
+"""Name of a contact solver -> the library's constant."""
+
+LARGEST_FRICTION = 10.0
+"""The library clamps the coefficient of a pair, the product of the two bodies', to this."""
+
+KEPT_GAP = 4.0
+"""Gap up to which landing keeps a contact, in units of (p dt sin(alpha))^2 half diagonals. A pivot
+rises by (theta' dt)^2 H/4 in a step, so that it is kept up to theta' = 2.8 p alpha. The free corner
+must be let go: an anchor that is still kept at the next impact pulls it back to where it stood."""
+
+ROLLED = 0.75
+"""Part of that gap at most by which a corner sphere rolls while the block turns by alpha. An anchor
+stays where it was made: from a gap away the library adds a contact, then another, and keeps all."""
+
+FLOOR_MASSES = 100.0
+"""Mass of a held base over that of the bodies on it; from ten on it does not matter."""
+
+FLOOR_G = 50.0
+"""Most force that holds it, over its weight, as in the library's example of such a constraint: 50 N
+on a cube of 0.1 kg. By its weight alone a base sinks; from twice as much on it does not matter."""
+
+NOWHERE, UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
 held_for_all = Lock()
 """Whose gap it is up to which contacts are kept: the library holds it for the whole process, and
@@ -42,8 +65,104 @@ idle: list[int] = []
 """Clients of this process whose run has ended: most runs are shorter than connecting."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BulletSettings:
+    """Settings of PyBullet, by default its own; None leaves a setting to the library.
+
+    Attributes
+    ----------
+    geometry, base_geometry : str
+        "box", "corners" (small spheres where the corners at the base are) or "hull" (a convex mesh
+        of the block's eight corners); of the base "plane" or "box".
+    planar : bool
+        Put two corner spheres into the middle plane instead of four at the edges; a box has its
+        four corners either way.
+    multibody : bool
+        Build the block in reduced coordinates, as the library does by default.
+    friction : float
+        Coefficient between block and base, at most 10; by default not the library's own, 0.5, with
+        which a block of H/B = 2 slides before it rocks.
+    corner_radius : float
+        Radius of the corner spheres over the width; less where they would roll out of the gap that
+        `gap_by_step` keeps.
+    exact_inertia : bool
+        Set the moments of inertia of the homogeneous block instead of those the library derives
+        from the collision shape.
+    damping : float or None
+        Linear and angular damping of the block.
+    iterations, residual : int, float or None
+        Of the contact solver: how many at most, and the squared velocity [m2/s2] at which they end.
+    sweeps : float or None
+        Iterations over 1/sin^2(alpha), where `iterations` are None.
+    contact_erp, friction_erp, constraint_erp : float or None
+        Part of a position error that a step corrects: of contacts, of their friction anchor, and
+        of the constraint that holds a base.
+    friction_anchor : bool
+        Hold the point of contact by its position, too.
+    contact_slop : float or None
+        Penetration [m] that is left alone.
+    breaking_threshold : float
+        Gap, over the half diagonal, up to which a contact is kept. The library holds this once
+        for the whole process, so every scene sets it.
+    gap_by_step : bool
+        Keep contacts up to a gap of 4 (p dt sin(alpha))^2 half diagonals instead.
+    by_phase : bool
+        Correct no positions in the short steps around an impact, and no slip at rest.
+    floor : str
+        How a base that moves is moved: by a "constraint", which holds a box with a mass, by its
+        "velocity", or by "position" alone.
+    solver : str or None
+        Of the contacts: "sequential impulse", "PGS" or "Dantzig".
+    warm_starting : float or None
+        Part of the last step's impulses from which the solver starts.
+    split_impulse, cone_friction, separating_axis : bool or None
+        Correct penetration without giving it a velocity; bound friction by a cone instead of a
+        pyramid; find contacts of polyhedra by separating axes.
+    restitution, base_restitution : float or None
+        Coefficients of the block and of the base, which the library multiplies.
+    restitution_threshold : float or None
+        Speed [m/s] below which nothing bounces.
+    contact_stiffness, contact_damping : float or None
+        Of a yielding contact, over m p^2 and m p; both or neither.
+    """
+
+    geometry: str = setting("box", names=GEOMETRIES)
+    planar: bool = False
+    multibody: bool = True
+    friction: float = setting(1.0, least=0.0, most=LARGEST_FRICTION)
+    corner_radius: float = setting(1e-6, above=0.0)
+    exact_inertia: bool = False
+    damping: float | None = None
+    iterations: int | None = setting(None, least=1)
+    sweeps: float | None = setting(None, above=0.0)
+    residual: float | None = None
+    contact_erp: float | None = None
+    friction_erp: float | None = None
+    constraint_erp: float | None = setting(least=0.0, most=1.0)
+    friction_anchor: bool = False
+    contact_slop: float | None = None
+    breaking_threshold: float = LIBRARY_BREAKING_THRESHOLD
+    gap_by_step: bool = False
+    by_phase: bool = False
+    base_geometry: str = setting("plane", names=("plane", "box"))
+    floor: str = setting("constraint", names=("constraint", "velocity", "position"))
+    solver: str | None = setting(names=tuple(SOLVERS))
+    warm_starting: float | None = setting(least=0.0, most=1.0)
+    split_impulse: bool | None = None
+    cone_friction: bool | None = None
+    separating_axis: bool | None = None
+    restitution: float | None = setting(least=0.0, most=1.0)
+    base_restitution: float = setting(1.0, least=0.0, most=1.0)
+    restitution_threshold: float | None = setting(least=0.0)
+    contact_stiffness: float | None = setting(above=0.0, beside=("contact_damping",))
+    contact_damping: float | None = setting(above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
 class BulletWorld:
-    """A block on a base in a PyBullet client that no other run uses meanwhile.
+    """Bodies on a base in a PyBullet client that no other run uses meanwhile.
 
     The base is a multibody without mass, whether it moves or not, if no constraint moves it: of
     the massless bases PyBullet offers, the only one whose velocity friction feels. On a static
@@ -52,33 +171,190 @@ class BulletWorld:
 
     moment = Moment.MIDDLE
 
-    def __init__(self, scene: Scene, settings: BulletSettings, dt_s: float) -> None:
-        self._s, self._ordinary = settings, dt_s
-        self._p, self._client = taken()
-        self._held_by, self._most = -1, most_force(scene)
-        self._due, self._lag, self.base_x_m = 0.0, 0.0, 0.0
-        self._constrained = constrained(scene, settings)
+    def __init__(
+        self, scene: Scene, settings: BulletSettings, dt_s: float, library: Any = None
+    ) -> None:
+        self._s, self._scene, self._ordinary = settings, scene, dt_s
+        p, self._client = taken()
+        self._p = p if library is None else library
         self._moving = scene.frame == "world"
+        self._constrained = self._moving and settings.floor == "constraint"
+        self.holder, self._due, self._lag, self.base_x_m = -1, 0.0, 0.0, 0.0
         self._dt: float | None = None
         self._phase: ContactPhase | None = None
-        self._ground = base_place(scene, settings)
         with held_for_all:
-            self._set_engine(scene)
-            floor = self._do(base_shape(scene, settings))
-            self._base = int(self._do(base_body(scene, settings, floor)))
-            self._bodies = [self._made(scene, number) for number in range(len(scene.bodies))]
-            self._fault = self._set_bodies(scene)
+            self._set_engine()
+            self._make_base()
+            self.bodies = [self._made(number) for number in range(len(scene.bodies))]
+            self._fault = self._set_dynamics()
             if self._constrained:
-                self._held_by = int(self._do(hold_call(scene, settings, self._base)))
-            self._take_inertia(scene)
-        self._put(scene)
-        self._state = np.zeros((len(self._bodies), len(Pose._fields)))
+                self._hold_base()
+            self._set_out()
+        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
+
+    def _call(self, name: str, **arguments: Any) -> Any:
+        """Call a function of the library in this world's client."""
+        return getattr(self._p, name)(**arguments, physicsClientId=self._client)
+
+    def _set_engine(self) -> None:
+        s, block = self._s, self._scene.system
+        gap = s.breaking_threshold
+        self._radius = s.corner_radius * block.width
+        if s.gap_by_step:
+            gap = KEPT_GAP * (math.sin(block.alpha) * block.p * self._ordinary) ** 2
+            self._radius = min(self._radius, ROLLED * (gap * block.R) / block.alpha)
+        self._iterations = iterations_for(self._scene, s.iterations, s.sweeps)
+        wanted = {
+            "numSolverIterations": self._iterations,
+            "solverResidualThreshold": s.residual,
+            "contactERP": s.contact_erp,
+            "frictionERP": s.friction_erp,
+            "erp": s.constraint_erp,
+            "contactSlop": s.contact_slop,
+            "contactBreakingThreshold": gap,
+            "constraintSolverType": s.solver and getattr(self._p, SOLVERS[s.solver]),
+            "warmStartingFactor": s.warm_starting,
+            "useSplitImpulse": s.split_impulse,
+            "enableConeFriction": s.cone_friction,
+            "enableSAT": s.separating_axis,
+            "restitutionVelocityThreshold": s.restitution_threshold,
+        }
+        # the library announces a solver past Python
+        with silence() if s.solver is not None else contextlib.nullcontext():
+            self._call("setPhysicsEngineParameter", **given(wanted))
+
+    def _make_base(self) -> None:
+        """Make the base; a plane has no inertia with which to be held."""
+        p, scene = self._p, self._scene
+        boxed = self._s.base_geometry == "box" or self._constrained
+        shape = {"shapeType": p.GEOM_PLANE, "planeNormal": (0.0, 0.0, 1.0)}
+        if boxed:
+            shape = {"shapeType": p.GEOM_BOX, "halfExtents": floor_half_size(scene)}
+        self.ground = (0.0, 0.0, -scene.bodies[0].height if boxed else 0.0)
+        mass = sum(body.mass for body in scene.bodies)
+        self.most_force = FLOOR_G * scene.system.gravity * FLOOR_MASSES * mass
+        mass = FLOOR_MASSES * mass if self._constrained else 0.0
+        floor = self._call("createCollisionShape", **shape)
+        self.base = self._body(mass, floor, self.ground, maximal=False)
+
+    def _body(self, mass: float, shape: int, place: Any, *, maximal: bool) -> Any:
+        return self._call(
+            "createMultiBody",
+            baseMass=mass,
+            baseCollisionShapeIndex=shape,
+            basePosition=place,
+            useMaximalCoordinates=maximal,
+        )
+
+    def _made(self, number: int) -> Any:
+        """Make a body; return its number in the library."""
+        p, s, scene = self._p, self._s, self._scene
+        body = scene.bodies[number]
+        if s.geometry == "box" or scene.layout.rests(number):
+            half = half_size(body)
+            shape = self._call("createCollisionShape", shapeType=p.GEOM_BOX, halfExtents=half)
+        elif s.geometry == "hull":
+            points = hull_points(body)
+            shape = self._call("createCollisionShape", shapeType=p.GEOM_MESH, vertices=points)
+        else:
+            corners = touching_spheres(scene, number, self._radius, planar=s.planar)
+            shape = self._call(
+                "createCollisionShapeArray",
+                shapeTypes=[p.GEOM_SPHERE] * len(corners),
+                radii=[self._radius] * len(corners),
+                collisionFramePositions=corners,
+            )
+        place = (body.home[0], 0.0, body.home[1])
+        return self._body(body.mass, shape, place, maximal=not s.multibody)
+
+    def _set_dynamics(self) -> str:
+        """Set the bodies' dynamics and say where reading them back disagrees."""
+        s, p, faults = self._s, self._scene.system.p, []
+        bounce = None if s.restitution is None else s.base_restitution
+        base = given({"lateralFriction": 1.0, "restitution": bounce})
+        for number, body in enumerate(self._scene.bodies):
+            wanted: dict[str, Any] = {
+                "lateralFriction": s.friction,
+                # without its mass in the same call, a block in maximal coordinates becomes NaN
+                "mass": body.mass,
+                "localInertiaDiagonal": body.inertia if s.exact_inertia else None,
+                "linearDamping": s.damping,
+                "angularDamping": s.damping,
+                "restitution": s.restitution,
+            }
+            if s.contact_stiffness is not None and s.contact_damping is not None:
+                wanted["contactStiffness"] = s.contact_stiffness * body.mass * p * p
+                wanted["contactDamping"] = s.contact_damping * body.mass * p
+            self._change(self.bodies[number], given(wanted))
+            if not number:
+                self._change(self.base, base)
+            faults.append(self._read_back(number, wanted))
+        return next(filter(None, faults), "")
+
+    def _change(self, body: int, wanted: Mapping[str, Any]) -> None:
+        anchor = {"frictionAnchor": 1} if self._s.friction_anchor else {}
+        self._call("changeDynamics", bodyUniqueId=body, linkIndex=-1, **wanted, **anchor)
+
+    def _read_back(self, number: int, wanted: Mapping[str, Any]) -> str:
+        s, body = self._s, self._scene.bodies[number]
+        block, base = self._dynamics(self.bodies[number]), self._dynamics(self.base)
+        engine = self._call("getPhysicsEngineParameters")
+        pairs: dict[str, tuple[Any, Any]] = {
+            "mass": (body.mass, block[0]),
+            "friction of the block": (s.friction, block[1]),
+            "friction of the base": (1.0, base[1]),
+            "numSolverIterations": (self._iterations, engine["numSolverIterations"]),
+        }
+        if s.exact_inertia:
+            pairs |= {f"inertia {i}": (body.inertia[i], block[2][i]) for i in range(3)}
+        if s.multibody:
+            # a body in maximal coordinates takes them, too, but reads zeros
+            pairs["restitution"] = (s.restitution, block[5])
+            pairs["contactDamping"] = (wanted.get("contactDamping"), block[8])
+            pairs["contactStiffness"] = (wanted.get("contactStiffness"), block[9])
+        return disagreement(pairs)
+
+    def _dynamics(self, body: int) -> Any:
+        return self._call("getDynamicsInfo", bodyUniqueId=body, linkIndex=-1)
+
+    def _hold_base(self) -> None:
+        """Hold the base where it is, by a constraint that moves it later."""
+        self.holder = self._call(
+            "createConstraint",
+            parentBodyUniqueId=self.base,
+            parentLinkIndex=-1,
+            childBodyUniqueId=-1,
+            childLinkIndex=-1,
+            jointType=self._p.JOINT_FIXED,
+            jointAxis=NOWHERE,
+            parentFramePosition=NOWHERE,
+            childFramePosition=self.ground,
+        )
+
+    def _set_out(self) -> None:
+        """Take a step far from the base, then let the bodies set out from where the scene begins.
+
+        Only after its first step has a body the inertia that was set: with the shape's own a block
+        that is lifted or released at once would turn too fast.
+        """
+        p, client, bodies = self._p, self._client, self._scene.bodies
+        up = 2.0 * bodies[0].height - bodies[0].home[1]
+        for number, body in zip(self.bodies, bodies, strict=True):
+            place = (body.home[0], 0.0, body.home[1] + up)
+            p.resetBasePositionAndOrientation(number, place, UPRIGHT, physicsClientId=client)
+        p.stepSimulation(physicsClientId=client)
+        for number, body in zip(self.bodies, bodies, strict=True):
+            at, half = body.at, 0.5 * body.at.theta
+            turned, place = (0.0, math.sin(half), 0.0, math.cos(half)), (at.x, 0.0, at.z)
+            velocity, rate = (at.velocity_x, 0.0, at.velocity_z), (0.0, at.rate, 0.0)
+            p.resetBasePositionAndOrientation(number, place, turned, physicsClientId=client)
+            p.resetBaseVelocity(number, velocity, rate, physicsClientId=client)
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
         p, client = self._p, self._client
         if step.dt_s != self._dt or step.phase is not self._phase:
-            erp = self._erp(step) if self._s.by_phase else {}
+            erp = self._corrected(step) if self._s.by_phase else {}
             p.setPhysicsEngineParameter(fixedTimeStep=step.dt_s, **erp, physicsClientId=client)
             self._dt, self._phase = step.dt_s, step.phase
         if self._moving:
@@ -87,14 +363,37 @@ class BulletWorld:
         p.stepSimulation(client)
         self._due = step.base_x
 
+    def _corrected(self, step: Step) -> dict[str, float]:
+        """Return what a step corrects of positions.
+
+        None around an impact: a short step would make a velocity of it. None along the base at
+        rest, where the places that two corners are held at contradict each other by a rounding, and
+        the solver would look for a compromise until its iterations end.
+        """
+        impact = step.phase in (ContactPhase.APPROACH, ContactPhase.STRIKE)
+        part = 0.0 if impact else min(1.0, step.dt_s / self._ordinary)
+        across = 0.0 if step.phase is ContactPhase.REST else part * part
+        contact, friction = self._s.contact_erp or 0.0, self._s.friction_erp or 0.0
+        return {"contactERP": part * part * contact, "frictionERP": across * friction}
+
+    def _move_base(self, step: Step) -> None:
+        """Give the base its velocity or its place, or move what holds it there."""
+        p, client, place = self._p, self._client, [step.base_x, *self.ground[1:]]
+        if self._constrained:
+            p.changeConstraint(self.holder, place, maxForce=self.most_force, physicsClientId=client)
+        elif self._s.floor == "velocity":
+            p.resetBaseVelocity(self.base, [step.base_velocity, 0.0, 0.0], physicsClientId=client)
+        else:
+            p.resetBasePositionAndOrientation(self.base, place, UPRIGHT, client)
+
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
         p, client, moved, raised = self._p, self._client, 0.0, 0.0
         if self._moving:
-            (moved, _, z), _ = p.getBasePositionAndOrientation(self._base, client)
-            raised = z - self._ground[2]
+            (moved, _, z), _ = p.getBasePositionAndOrientation(self.base, client)
+            raised = z - self.ground[2]
             self.base_x_m, self._lag = moved, max(self._lag, abs(moved - self._due))
-        for row, body in enumerate(self._bodies):
+        for row, body in enumerate(self.bodies):
             (x, _, z), q = p.getBasePositionAndOrientation(body, client)
             rate = p.getBaseVelocity(body, client)[1][1]
             self._state[row] = x - moved, z - raised, 2.0 * math.atan2(q[1], q[3]), rate
@@ -107,101 +406,19 @@ class BulletWorld:
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
-        engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
-        return self._fault or disagreement({"fixedTimeStep": (self._dt, engine["fixedTimeStep"])})
+        read = self._call("getPhysicsEngineParameters")["fixedTimeStep"]
+        return self._fault or disagreement({"fixedTimeStep": (self._dt, read)})
 
     def close(self) -> None:
-        """Leave the client to the next run."""
-        given_back(self._p, self._client)
-
-    def _take_inertia(self, scene: Scene) -> None:
-        """Take a step far from the base: only after its first has a body the inertia that was set.
-
-        With the shape's own a block that is lifted or released at once would turn too fast.
-        """
-        p, client = self._p, self._client
-        for body, place in zip(self._bodies, aloft(scene), strict=True):
-            p.resetBasePositionAndOrientation(body, place, UPRIGHT, physicsClientId=client)
-        p.stepSimulation(physicsClientId=client)
-
-    def _put(self, scene: Scene) -> None:
-        """Let the bodies set out from where the scene begins."""
-        p, client = self._p, self._client
-        for number, body in zip(self._bodies, scene.bodies, strict=True):
-            at, half = body.at, 0.5 * body.at.theta
-            turned, place = (0.0, math.sin(half), 0.0, math.cos(half)), (at.x, 0.0, at.z)
-            velocity, rate = (at.velocity_x, 0.0, at.velocity_z), (0.0, at.rate, 0.0)
-            p.resetBasePositionAndOrientation(number, place, turned, physicsClientId=client)
-            p.resetBaseVelocity(number, velocity, rate, physicsClientId=client)
-
-    def _move_base(self, step: Step) -> None:
-        """Give the base its velocity or its place, or move what holds it there."""
-        p, client, place = self._p, self._client, [step.base_x, *self._ground[1:]]
-        if self._constrained:
-            p.changeConstraint(self._held_by, place, maxForce=self._most, physicsClientId=client)
-        elif self._s.floor == "velocity":
-            p.resetBaseVelocity(self._base, [step.base_velocity, 0.0, 0.0], physicsClientId=client)
-        else:
-            p.resetBasePositionAndOrientation(self._base, place, UPRIGHT, client)
-
-    def _erp(self, step: Step) -> dict[str, float]:
-        """Return what a step corrects of positions."""
-        normal, across = corrected(step.phase, step.dt_s, self._ordinary)
-        contact, friction = self._s.contact_erp or 0.0, self._s.friction_erp or 0.0
-        return {"contactERP": normal * contact, "frictionERP": across * friction}
-
-    def _set_engine(self, scene: Scene) -> None:
-        # the library announces a solver past Python
-        with silence() if self._s.solver is not None else contextlib.nullcontext():
-            self._do(engine_call(scene, self._s, self._ordinary))
-
-    def _do(self, call: Call) -> Any:
-        """Make a call in this world's client."""
-        arguments = {name: self._value(value) for name, value in call.arguments.items()}
-        return getattr(self._p, call.name)(**arguments, physicsClientId=self._client)
-
-    def _value(self, value: Any) -> Any:
-        if isinstance(value, Constant):
-            return getattr(self._p, value)
-        return [self._value(item) for item in value] if isinstance(value, list) else value
-
-    def _made(self, scene: Scene, number: int) -> int:
-        """Make a body; return its number in the library."""
-        shape = self._do(body_shape(scene, number, self._s, self._ordinary))
-        return int(self._do(body_of(scene.bodies[number], self._s, shape)))
-
-    def _set_bodies(self, scene: Scene) -> str:
-        """Set the bodies' dynamics and say where reading them back disagrees."""
-        faults = []
-        for number, body in enumerate(self._bodies):
-            call = body_call(scene, number, self._s, body)
-            self._do(call)
-            if not number:
-                self._do(base_call(self._s, self._base))
-            faults.append(self._read_back(scene, number, call.arguments))
-        return next(filter(None, faults), "")
-
-    def _read_back(self, scene: Scene, number: int, wanted: Mapping[str, Any]) -> str:
-        s, body = self._s, scene.bodies[number]
-        block, base = self._dynamics(self._bodies[number]), self._dynamics(self._base)
-        engine = self._p.getPhysicsEngineParameters(physicsClientId=self._client)
-        pairs: dict[str, tuple[Any, Any]] = {
-            "mass": (body.mass, block[0]),
-            "friction of the block": (s.friction, block[1]),
-            "friction of the base": (1.0, base[1]),
-            "numSolverIterations": (s.iterations_of(scene), engine["numSolverIterations"]),
+        """Empty the client for the next run; a reset keeps the gap and the step: put them back."""
+        self._call("resetSimulation")
+        own = {
+            "contactBreakingThreshold": LIBRARY_BREAKING_THRESHOLD,
+            "fixedTimeStep": LIBRARY_STEP_S,
         }
-        if s.exact_inertia:
-            pairs |= {f"inertia {i}": (body.inertia[i], block[2][i]) for i in range(3)}
-        if s.multibody:
-            # a body in maximal coordinates takes them, too, but reads zeros
-            pairs["restitution"] = (s.restitution, block[5])
-            pairs["contactDamping"] = (wanted.get("contactDamping"), block[8])
-            pairs["contactStiffness"] = (wanted.get("contactStiffness"), block[9])
-        return disagreement(pairs)
-
-    def _dynamics(self, body: int) -> tuple[Any, ...]:
-        return tuple(self._p.getDynamicsInfo(body, -1, physicsClientId=self._client))
+        with held_for_all:
+            self._call("setPhysicsEngineParameter", **own)
+        idle.append(self._client)
 
 
 def taken() -> tuple[Any, int]:
@@ -214,42 +431,41 @@ def taken() -> tuple[Any, int]:
         return p, idle.pop()
     client = int(p.connect(p.DIRECT))
     with silence():  # a build that has none says so past Python
-        renderer = p.loadPlugin(RENDERER, physicsClientId=client)
+        renderer = p.loadPlugin("tinyRendererPlugin", physicsClientId=client)
     if renderer >= 0:
         p.unloadPlugin(renderer, physicsClientId=client)
     return p, client
 
 
-def given_back(p: Any, client: int) -> None:
-    """Empty a client of the library for the next run, and put back what a reset keeps."""
-    p.resetSimulation(physicsClientId=client)
-    with held_for_all:
-        p.setPhysicsEngineParameter(
-            contactBreakingThreshold=LIBRARY_BREAKING_THRESHOLD,
-            fixedTimeStep=LIBRARY_STEP_S,
-            physicsClientId=client,
-        )
-    idle.append(client)
-
-
-def corrected(phase: ContactPhase, dt_s: float, ordinary_s: float) -> tuple[float, float]:
-    """Return the parts of a position's error to correct, along a contact's normal and across it.
-
-    None in a step around an impact: a short step would make a velocity of it. None across at rest,
-    where the places that two corners are held at contradict each other by a rounding, and the
-    solver would look for a compromise until its iterations end.
-
-    Parameters
-    ----------
-    phase : ContactPhase, of the step
-    dt_s, ordinary_s : float, its length, and that of an ordinary one [s]
-
-    Returns
-    -------
-    (float, float)
-        Each from 0 to 1.
-    """
-    if phase in (ContactPhase.APPROACH, ContactPhase.STRIKE):
-        return 0.0, 0.0
-    part = min(1.0, dt_s / ordinary_s)
-    return part * part, 0.0 if phase is ContactPhase.REST else part * part
+def script(scene: Scene, settings: BulletSettings, dt_s: float) -> Script:
+    """Return a scene as calls of PyBullet; see `engines.run.export`."""
+    notes = Notes(without=("physicsClientId",))
+    world = BulletWorld(scene, settings, dt_s, notes.of(imported("pybullet"), "p"))
+    notes.name(base=world.base)
+    notes.name_bodies(scene, world.bodies)
+    moves = scene.frame == "world"
+    if moves and settings.floor == "constraint":
+        notes.name(holder=world.holder)
+    there = f"[base_x, 0.0, {world.ground[2]!r}]"
+    move = {
+        "constraint": f"p.changeConstraint(holder, {there}, maxForce={world.most_force!r})",
+        "velocity": "p.resetBaseVelocity(base, [base_velocity, 0.0, 0.0])",
+        "position": f"p.resetBasePositionAndOrientation(base, {there}, {UPRIGHT})",
+    }[settings.floor]
+    at = "p.getBasePositionAndOrientation({})[0][0]"
+    world.close()
+    return Script(
+        imports=("import pybullet as p",),
+        settings=(
+            f"p.setTimeStep({dt_s!r})",
+            *notes.quoted("Parameter", "Shape", "createMultiBody", "changeDynamics"),
+        ),
+        build=("p.connect(p.DIRECT)", *notes.lines(), "p.setTimeStep(DT)"),
+        step=(*[move] * moves, "p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
+        pose=(
+            "q = p.getBasePositionAndOrientation(bodies[number])[1]",
+            "theta = 2.0 * math.atan2(q[1], q[3])",
+            "rate = p.getBaseVelocity(bodies[number])[1][1]",
+        ),
+        place=at.format("bodies[0]") + f" - {at.format('base')}" * moves,
+    )
