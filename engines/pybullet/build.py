@@ -19,7 +19,7 @@ from engines.parts import (
     touching_spheres,
 )
 from engines.run.export import Notes
-from engines.scene import GEOMETRIES, Scene
+from engines.scene import Scene
 from engines.settings import check, disagreement, given, setting
 from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
 
@@ -126,7 +126,7 @@ class BulletSettings:
         Of a yielding contact, over m p^2 and m p; both or neither.
     """
 
-    geometry: str = setting("box", names=GEOMETRIES)
+    geometry: str = setting("box", names=("box", "corners", "hull"))
     planar: bool = False
     multibody: bool = True
     friction: float = setting(1.0, least=0.0, most=LARGEST_FRICTION)
@@ -175,8 +175,8 @@ class BulletWorld:
         self, scene: Scene, settings: BulletSettings, dt_s: float, library: Any = None
     ) -> None:
         self._s, self._scene, self._ordinary = settings, scene, dt_s
-        p, self._client = taken()
-        self._p = p if library is None else library
+        self._own, self._client = taken()
+        self._p = self._own if library is None else library
         self._moving = scene.frame == "world"
         self._constrained = self._moving and settings.floor == "constraint"
         self.holder, self._due, self._lag, self.base_x_m = -1, 0.0, 0.0, 0.0
@@ -234,20 +234,21 @@ class BulletWorld:
         mass = sum(body.mass for body in scene.bodies)
         self.most_force = FLOOR_G * scene.system.gravity * FLOOR_MASSES * mass
         mass = FLOOR_MASSES * mass if self._constrained else 0.0
-        floor = self._call("createCollisionShape", **shape)
-        self.base = self._body(mass, floor, self.ground, maximal=False)
+        self.shapes = [self._call("createCollisionShape", **shape)]
+        self.base = self._body(mass, self.ground, maximal=False)
 
-    def _body(self, mass: float, shape: int, place: Any, *, maximal: bool) -> Any:
-        return self._call(
-            "createMultiBody",
-            baseMass=mass,
-            baseCollisionShapeIndex=shape,
+    def _body(self, mass: float, place: Any, *, maximal: bool) -> Any:
+        """Make a body of the last shape; return its number in the library."""
+        return self._p.createMultiBody(
+            mass,
+            self.shapes[-1],
             basePosition=place,
             useMaximalCoordinates=maximal,
+            physicsClientId=self._client,
         )
 
     def _made(self, number: int) -> Any:
-        """Make a body; return its number in the library."""
+        """Make a body, of a shape of its own."""
         p, s, scene = self._p, self._s, self._scene
         body = scene.bodies[number]
         if s.geometry == "box" or scene.layout.rests(number):
@@ -265,7 +266,8 @@ class BulletWorld:
                 collisionFramePositions=corners,
             )
         place = (body.home[0], 0.0, body.home[1])
-        return self._body(body.mass, shape, place, maximal=not s.multibody)
+        self.shapes.append(shape)
+        return self._body(body.mass, place, maximal=not s.multibody)
 
     def _set_dynamics(self) -> str:
         """Set the bodies' dynamics and say where reading them back disagrees."""
@@ -298,7 +300,7 @@ class BulletWorld:
     def _read_back(self, number: int, wanted: Mapping[str, Any]) -> str:
         s, body = self._s, self._scene.bodies[number]
         block, base = self._dynamics(self.bodies[number]), self._dynamics(self.base)
-        engine = self._call("getPhysicsEngineParameters")
+        engine = self._own.getPhysicsEngineParameters(physicsClientId=self._client)
         pairs: dict[str, tuple[Any, Any]] = {
             "mass": (body.mass, block[0]),
             "friction of the block": (s.friction, block[1]),
@@ -315,7 +317,7 @@ class BulletWorld:
         return disagreement(pairs)
 
     def _dynamics(self, body: int) -> Any:
-        return self._call("getDynamicsInfo", bodyUniqueId=body, linkIndex=-1)
+        return self._own.getDynamicsInfo(body, -1, physicsClientId=self._client)
 
     def _hold_base(self) -> None:
         """Hold the base where it is, by a constraint that moves it later."""
@@ -406,18 +408,18 @@ class BulletWorld:
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
-        read = self._call("getPhysicsEngineParameters")["fixedTimeStep"]
-        return self._fault or disagreement({"fixedTimeStep": (self._dt, read)})
+        engine = self._own.getPhysicsEngineParameters(physicsClientId=self._client)
+        return self._fault or disagreement({"fixedTimeStep": (self._dt, engine["fixedTimeStep"])})
 
     def close(self) -> None:
         """Empty the client for the next run; a reset keeps the gap and the step: put them back."""
-        self._call("resetSimulation")
-        own = {
-            "contactBreakingThreshold": LIBRARY_BREAKING_THRESHOLD,
-            "fixedTimeStep": LIBRARY_STEP_S,
-        }
+        self._own.resetSimulation(physicsClientId=self._client)
         with held_for_all:
-            self._call("setPhysicsEngineParameter", **own)
+            self._own.setPhysicsEngineParameter(
+                contactBreakingThreshold=LIBRARY_BREAKING_THRESHOLD,
+                fixedTimeStep=LIBRARY_STEP_S,
+                physicsClientId=self._client,
+            )
         idle.append(self._client)
 
 
@@ -441,7 +443,7 @@ def script(scene: Scene, settings: BulletSettings, dt_s: float) -> Script:
     """Return a scene as calls of PyBullet; see `engines.run.export`."""
     notes = Notes(without=("physicsClientId",))
     world = BulletWorld(scene, settings, dt_s, notes.of(imported("pybullet"), "p"))
-    notes.name(base=world.base)
+    notes.name(floor=world.shapes[0], base=world.base, shape=world.shapes[1:])
     notes.name_bodies(scene, world.bodies)
     moves = scene.frame == "world"
     if moves and settings.floor == "constraint":
@@ -453,8 +455,7 @@ def script(scene: Scene, settings: BulletSettings, dt_s: float) -> Script:
         "position": f"p.resetBasePositionAndOrientation(base, {there}, {UPRIGHT})",
     }[settings.floor]
     at = "p.getBasePositionAndOrientation({})[0][0]"
-    world.close()
-    return Script(
+    said = Script(
         imports=("import pybullet as p",),
         settings=(
             f"p.setTimeStep({dt_s!r})",
@@ -469,3 +470,5 @@ def script(scene: Scene, settings: BulletSettings, dt_s: float) -> Script:
         ),
         place=at.format("bodies[0]") + f" - {at.format('base')}" * moves,
     )
+    world.close()
+    return said

@@ -46,6 +46,9 @@ MAKING = re.compile("(create|add|load)_?")
 TOKEN = re.compile("\x02(\\d+)\x03")
 """What stands for the name of an object until the lines are written."""
 
+NOTHING: tuple[Any, ...] = ()
+"""What a function answers that says nothing."""
+
 NUMBERED = re.compile(r"_\d+\b")
 WIDTH = 99
 
@@ -189,7 +192,7 @@ class Notes:
         ]
         arguments = ", ".join([*map(self.said, given), *shown])
         call = f"{self.said(function, argument=False)}({arguments})"
-        if it is None or id(it) in self._known:
+        if it is None or it is NOTHING or id(it) in self._known:
             self.write(call)
             return self._known.get(id(it))
         several = type(it) in (list, tuple)

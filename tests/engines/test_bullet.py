@@ -1,4 +1,4 @@
-"""PyBullet: what is corrected of a position, its clients, its solver at rest."""
+"""PyBullet: its clients, its solver at rest."""
 
 import itertools
 import multiprocessing
@@ -13,27 +13,11 @@ from uses import rocked, scene
 
 from analytic.block import RigidBlock
 from engines import ENGINES
+from engines.pybullet import FACTORS
 from engines.pybullet import build as bullet
-from engines.pybullet.settings import FACTORS
 from engines.run.run import build, simulate_world
-from engines.world import ContactPhase
 
 p = pytest.importorskip("pybullet")
-
-
-@pytest.mark.parametrize(
-    ("phase", "dt_s", "normal", "across"),
-    [
-        (ContactPhase.SWING, 1e-3, 1.0, 1.0),
-        (ContactPhase.SWING, 2e-3, 1.0, 1.0),  # no more than there is
-        (ContactPhase.SWING, 5e-4, 0.25, 0.25),
-        (ContactPhase.REST, 5e-4, 0.25, 0.0),
-        (ContactPhase.APPROACH, 1e-3, 0.0, 0.0),
-        (ContactPhase.STRIKE, 1e-3, 0.0, 0.0),
-    ],
-)
-def test_what_is_corrected_of_a_position(phase, dt_s, normal, across):
-    assert bullet.corrected(phase, dt_s, 1e-3) == (normal, across)
 
 
 def apart(number):

@@ -8,7 +8,8 @@ from uses import BLOCK, HERE, SHAKEN, agreed, pulse, rocked, scene
 
 from analytic.response import Outcome
 from engines.mujoco import model
-from engines.pybullet import NAIVE, calls
+from engines.pybullet import NAIVE
+from engines.pybullet import build as bullet
 from engines.run.run import LAG, build
 
 FASTEST = 2.0 * SHAKEN.amplitude / SHAKEN.omega
@@ -56,7 +57,7 @@ def test_what_stands_on_a_floor_that_lags_is_at_rest(engine, onsets):
 
 FLOORS = {
     # but a force below the weight of both lets them fall: engines/troubles
-    "pybullet": (calls, {"FLOOR_MASSES": (1000.0, 10.0), "FLOOR_G": (2.0,)}, 2e-3),
+    "pybullet": (bullet, {"FLOOR_MASSES": (1000.0, 10.0), "FLOOR_G": (2.0,)}, 2e-3),
     # until it is so large that the solver takes what is left of the block's forces for nothing
     "mujoco": (model, {"FLOOR_MASSES": (1e2, 1e4)}, 3e-3),
 }
@@ -81,7 +82,7 @@ def test_what_naive_pybullet_does_not_set_is_the_library_s_own():
     box = p.createCollisionShape(p.GEOM_BOX, halfExtents=half, physicsClientId=bare)
     body = p.createMultiBody(375.0, box, physicsClientId=bare)
     read = []
-    for client, block in ((world._client, world._bodies[0]), (bare, body)):
+    for client, block in ((world._client, world.bodies[0]), (bare, body)):
         place = (0.0, 0.0, 100.0), (0.0, 0.0, 0.0, 1.0)
         p.resetBasePositionAndOrientation(block, *place, physicsClientId=client)
         p.resetBaseVelocity(block, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), physicsClientId=client)

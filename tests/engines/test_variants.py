@@ -11,8 +11,7 @@ from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, installed_engines
 from engines.declaration import BEST, LEFT_OUT, OWN_STEPS, Stepping
 from engines.mujoco.settings import TUNED, MujocoSettings
-from engines.pybullet.build import BulletWorld
-from engines.pybullet.settings import BulletSettings
+from engines.pybullet.build import BulletSettings, BulletWorld
 from engines.run.look import Monitor
 from engines.run.run import build
 from studies.cases.selection import chosen_cases
@@ -119,14 +118,13 @@ def test_solref_and_margin_reach_the_library():
 def test_stiffness_reads_back_where_the_library_tells(monkeypatch):
     settings = {"multibody": True, "contact_stiffness": 1e6, "contact_damping": 1e5}
     assert run("pybullet", scene(preset=BEST, settings=settings)).outcome is Outcome.ROCKED
-    do = BulletWorld._do
+    call = BulletWorld._call
 
-    def forgetful(self, call):
-        lost = ("contactStiffness", "contactDamping")
-        kept = {name: value for name, value in call.arguments.items() if name not in lost}
-        return do(self, replace(call, arguments=kept))
+    def forgetful(self, name, **arguments):
+        lost = {"contactStiffness", "contactDamping"}
+        return call(self, name, **{key: arguments[key] for key in arguments.keys() - lost})
 
-    monkeypatch.setattr(BulletWorld, "_do", forgetful)
+    monkeypatch.setattr(BulletWorld, "_call", forgetful)
     response = run("pybullet", scene(preset=BEST, settings=settings))
     assert response.message.startswith("contactDamping was set to")
 
