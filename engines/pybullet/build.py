@@ -444,7 +444,7 @@ def script(scene: Scene, settings: BulletSettings, dt_s: float) -> Script:
     notes = Notes(without=("physicsClientId",))
     world = BulletWorld(scene, settings, dt_s, notes.of(imported("pybullet"), "p"))
     notes.name(floor=world.shapes[0], base=world.base, shape=world.shapes[1:])
-    notes.name_bodies(scene, world.bodies)
+    notes.name_bodies(world.bodies)
     moves = scene.frame == "world"
     if moves and settings.floor == "constraint":
         notes.name(holder=world.holder)
