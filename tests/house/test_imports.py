@@ -78,8 +78,6 @@ def test_no_help_loads_a_table_a_plot_or_an_engine():
     """Neither that of all commands, which comes first, nor that of each."""
     told = told_by(["--help"], *([name, "--help"] for name in COMMANDS))
     assert {name: loaded & set(EACH) for name, loaded in told.items() if loaded & set(EACH)} == {}
-    modules = {f"studies.{name}" for name in set(COMMANDS) - {"report", "readme"}}
-    assert modules <= set().union(*told.values())
 
 
 def test_a_run_of_an_engine_loads_its_library_alone():
@@ -92,27 +90,15 @@ def test_a_run_of_an_engine_loads_its_library_alone():
 
 
 FORBIDDEN = {
-    "studies asks, engines simulates, analytic knows": ("analytic/block.py", "import engines"),
-    "the mathematics knows no engine, table or plot": ("analytic/maps.py", "import pandas"),
-    "kernels know none of the friendly modules above them": (
-        "analytic/kernels/taylor.py",
-        "import analytic.block",
-    ),
-    "the floors of studies, and studies that do not know one another": (
-        "studies/contact.py",
-        "import studies.stability",
-    ),
-    "no study opens an engine's folder": (
-        "studies/stability.py",
-        "import engines.mujoco.settings",
-    ),
-    "no engine knows another": ("engines/dart/build.py", "import engines.rapier.settings"),
-    "no package imports in a circle": (
-        "studies/measures/claims.py",
-        "import studies.sweep",
-    ),
+    "studies asks, engines simulates, analytic knows": ("analytic/block", "engines"),
+    "the mathematics knows no engine, table or plot": ("analytic/maps", "pandas"),
+    "kernels know none of the friendly modules": ("analytic/kernels/taylor", "analytic.block"),
+    "the floors of studies": ("studies/contact", "studies.stability"),
+    "no study opens an engine's folder": ("studies/stability", "engines.mujoco.build"),
+    "no engine knows another": ("engines/dart/build", "engines.rapier"),
+    "no package imports in a circle": ("studies/measures/claims", "studies.sweep"),
 }
-"""Contract -> a module, and an import that the contract forbids there."""
+"""How the name of a contract begins -> a module, and what it must not import."""
 NO_ANSWER = "an adapter never sees the answer"
 ANSWERS = {
     "analytic.simulate": "from analytic import simulate",
@@ -140,10 +126,10 @@ def told(tmp_path_factory):
     shutil.copy(ROOT / "pyproject.toml", folder)
     adapters = {f"forbidden_{n}": statement for n, statement in enumerate(ANSWERS.values())}
     for name, text in {"allowed": ALLOWED, **adapters}.items():
-        (folder / "engines" / "pymunk" / f"{name}.py").write_text(text)
+        (folder / "engines" / f"{name}.py").write_text(text)
     for place, statement in FORBIDDEN.values():
-        with (folder / place).open("a") as file:
-            file.write(f"\n{statement}\n")
+        with (folder / f"{place}.py").open("a") as file:
+            file.write(f"\nimport {statement}\n")
     lint = "from importlinter.cli import lint_imports as l; raise SystemExit(l(no_cache=True))"
     known = {**os.environ, "PYTHONPATH": str(folder), "COLUMNS": "200"}
     asked = [sys.executable, "-c", lint]
@@ -156,10 +142,10 @@ def test_every_contract_is_broken_by_what_it_forbids(told):
     contracts = (ROOT / "pyproject.toml").read_text().count("[[tool.importlinter.contracts]]")
     assert contracts == len(FORBIDDEN) + 1
     for contract in (*FORBIDDEN, NO_ANSWER):
-        assert f"{contract} BROKEN" in " ".join(told.split())
+        assert re.search(rf"{contract}[^\n]* BROKEN", told), contract
 
 
 def test_an_adapter_that_would_see_the_answer_is_named(told):
-    named = re.findall(r"(engines\.pymunk\.\S+) -> (analytic\S*) \(l", told)
-    expected = [(f"engines.pymunk.forbidden_{n}", module) for n, module in enumerate(ANSWERS)]
+    named = re.findall(r"(engines\.forbidden_\S+) -> (analytic\S*) \(l", told)
+    expected = [(f"engines.forbidden_{n}", module) for n, module in enumerate(ANSWERS)]
     assert sorted(named) == sorted(expected)

@@ -54,20 +54,6 @@ def test_the_dictionary_holds_nothing_else():
     assert (DICTIONARY["meaning"] != "").all()
 
 
-def test_a_number_is_called_whole_only_where_no_table_says_otherwise():
-    """A count that were called a number would pass as one: somewhere each number has a fraction."""
-    whole = {}
-    for path in TABLES:
-        table = pd.read_csv(path, low_memory=False)
-        for name in table.select_dtypes("number"):
-            key = path.relative_to(PUBLISHED).as_posix(), name
-            whole[key] = bool((table[name].dropna() % 1 == 0).all())
-    told = DICTIONARY.set_index(["table", "column"])
-    without_unit = told[told["unit"] == "-"]
-    ever = {name for (_, name), so in whole.items() if not so}
-    assert set(without_unit.index.get_level_values("column")) - ever == set()
-
-
 def test_what_a_column_means_in_one_table_is_a_column_of_it_and_means_another_thing():
     stems = {path.relative_to(PUBLISHED).as_posix().partition(".")[0]: path for path in TABLES}
     lines = pd.read_csv(ROOT / "studies" / "measures" / "columns.csv", keep_default_na=False)

@@ -18,7 +18,7 @@ from studies import respond
 from studies.__main__ import COMMANDS, run
 from studies.measures.published import PUBLISHED
 from studies.page.chapters import CHAPTERS, PARTS
-from studies.sources.registry import SOURCES, UnknownSourceError, resolve
+from studies.sources.registry import SOURCES, resolve
 
 STUDIES = {
     "histories": ("--figure", "4", "--sources", "exact", "modified"),
@@ -133,19 +133,6 @@ def test_every_source_answers_figure_5b(name):
     assert all(isinstance(impact, Impact) for impact in response.impacts)
     assert response.impacts
     assert response.steps > 0
-
-
-@pytest.mark.parametrize(
-    ("name", "allowed"),
-    [
-        *((name, "mujoco") for name in ("nonsense", "mujoco:", "mujoco:best", ":fixed")),
-        ("exact:fixed", "must be 'exact'"),
-    ],
-)
-def test_an_unknown_source_is_refused_with_what_is_allowed(name, allowed):
-    with pytest.raises(UnknownSourceError, match=allowed) as error:
-        respond(name, BLOCK, FULL_SINE)
-    assert repr(name) in str(error.value)
 
 
 def test_a_sweep_is_one_row_a_case_and_source(tmp_path, capsys):

@@ -54,28 +54,13 @@ def test_kinds_are_counted_and_said():
     assert in_kinds(dict.fromkeys(KINDS, 0)) == "none wrong"
 
 
-def case(source, outcome, peak, **changes):
-    labels = {"figure": 6, "pulse": "half-sine", "excess_g": 0.05, "aspect": 2.0, "width_m": 0.5}
-    answer = {"source": source, "outcome": outcome, "peak_ratio": peak, "wall_s": 1e-3}
-    return {**labels, "omega_over_p": 4.0, **answer, **changes}
-
-
-def drake_like():
-    """Return rows of an engine that is right once, and wrong in each kind; the last must fall."""
-    return pd.DataFrame(
-        [
-            case("drake:naive", ROCKED, 0.011),
-            case("drake:naive", REST_WORD, 0.0, width_m=1.0),
-            case("drake:naive", REST_WORD, 0.0, omega_over_p=3.9),
-            case("drake:naive", FAILED, math.nan, omega_over_p=3.9, width_m=1.0),
-            case("drake:naive", OVER, math.inf, omega_over_p=3.8),
-            case("drake:naive", ROCKED, 0.5, omega_over_p=0.1),
-        ]
-    )
-
-
 def test_a_summary_has_a_column_for_each_kind():
-    compared = with_reference(drake_like())
+    """Of an engine that is right once, and wrong in each kind; the last block must fall."""
+    columns = ["outcome", "peak_ratio", "width_m", "omega_over_p"]
+    found = [(ROCKED, 0.011, 0.5, 4.0), (REST_WORD, 0.0, 1.0, 4.0), (REST_WORD, 0.0, 0.5, 3.9)]
+    found += [(FAILED, math.nan, 1.0, 3.9), (OVER, math.inf, 0.5, 3.8), (ROCKED, 0.5, 0.5, 0.1)]
+    labels = {"figure": 6, "pulse": "half-sine", "excess_g": 0.05, "aspect": 2.0, "wall_s": 1e-3}
+    compared = with_reference(pd.DataFrame(found, columns=columns).assign(source="it", **labels))
     assert list(compared["agrees"]) == [True, False, False, False, False, False]
     line = summarize(compared).iloc[0]
     assert {kind: line[kind] for kind in KINDS} == {FALL: 2, REST: 2, NO_ANSWER: 1}
