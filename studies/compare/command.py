@@ -87,16 +87,15 @@ def command(
     place = place_of(computing, at_once=True)
     rows = compare(case, sources, yours, place=place, effort=effort, estimate=estimate)
     note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
-    found = records(rows, note)
     if json:
-        for record in found:
+        for record in records(rows, note):
             finite = {
                 name: None if isinstance(value, float) and not math.isfinite(value) else value
                 for name, value in record.items()
             }
             print(json_text.dumps(finite, allow_nan=False))
     else:
-        print(table_text(case, found, degrees=excitation.degrees))
+        print(table_text(case, records(rows), note, degrees=excitation.degrees))
     if plot:
         draw(case, rows, plot)
     return exit_code(rows)

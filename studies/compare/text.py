@@ -23,8 +23,10 @@ SHOWN = (
 """Columns of the table, as in JSON, where a source has them."""
 
 
-def table_text(case: Question, records: Sequence[Row], *, degrees: bool = False) -> str:
-    """Return the case and its records as text; rotations in units of alpha, or in degrees."""
+def table_text(
+    case: Question, records: Sequence[Row], note: str = "", *, degrees: bool = False
+) -> str:
+    """Return the case, a note on its motion, and its records; angles over alpha, or in degrees."""
     theta, rate = case.start
     turned, system = math.degrees(1.0), case.system
     if degrees:
@@ -42,6 +44,7 @@ def table_text(case: Question, records: Sequence[Row], *, degrees: bool = False)
         [
             _standing(system, degrees),
             f"ground  {_ground(case)}; observed for {case.duration:.4g} s",
+            *[f"base    {note}"] * bool(note),
             *[f"start   {words}"] * (case.start != (0.0, 0.0)),
             *[f"exact   {', '.join(facts)}"] * (not isinstance(system, SlidingBlock)),
             "",

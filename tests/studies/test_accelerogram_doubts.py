@@ -37,55 +37,27 @@ def asc(old, new):
 # (what is the matter, text or bytes, --units, words of the refusal)
 DOUBTS = [
     ("velocity", at2(UNLIKE), None, "line 3 speaks of velocity"),
-    ("velocity, given units", at2(UNLIKE), "g", "line 3 speaks of velocity"),
     ("displacement", at2("DISPLACEMENT TIME HISTORY IN UNITS OF CM"), "g", "displacement"),
-    ("displacement, no unit", at2("DISPLACEMENT TIME HISTORY"), "m/s2", "displacement"),
-    ("a title, velocity", at2("ACCELEROGRAM 12\nVELOCITY TIME SERIES"), "g", "line 4 speaks of"),
     ("units of velocity", at2("ACCELERATION TIME SERIES IN UNITS OF CM/S"), "g", "'cm/s'"),
     ("a column of velocity", f"t (s), v (m/s)\n{COMMAS}", "g", "'v (m/s)'"),
-    ("a column of velocity, blanks", f"Time Velocity\n{ROWS}", "g", "'Velocity'"),
-    ("a remark of velocity", f"# velocity of the ground\n{ROWS}", "g", "speaks of velocity"),
-    ("a column in m/s", f"t [s], x [m/s]\n{COMMAS}", "g", "'x [m/s]'"),
     ("mg and g", at2("ACCELERATION IN UNITS OF MG"), "g", "states mg; --units must not be g"),
-    ("mm/s2 and m/s2", at2("ACCELERATION IN MM/S2"), "m/s2", "mm/s2; --units must not be m/s2"),
     ("mg in a table", f"t (s)  a (mg)\n{ROWS}", "g", "states mg; --units must not be g"),
-    ("mm/s2 in a table", f"t,a_mm/s^2\n{COMMAS}", "g", "mm/s2; --units must not"),
     ("feet", at2("ACCELERATION IN UNITS OF FT/S2"), "g", "line 3 states 'ft/s2'; it must be among"),
-    ("volts", at2("ACCELERATION IN UNITS OF V"), "g", "line 3 states 'v'; it must be among"),
-    ("parts of g", at2("ACCELERATION IN UNITS OF G/10"), "g", "line 3 states 'g/10'"),
     ("decimal commas", "1,5\n2,7\n3,1\n", "g", "its commas may be decimal ones"),
-    ("decimal commas, semicolons", "0,00;1,5\n0,01;2,7\n", "g", "'0,00' must be a number with a d"),
-    ("decimal commas, blanks", "0,00 1,5\n0,01 2,7\n", "g", "has 3 columns"),
     ("decimal commas in AT2", GOOD.replace(".1\n", ",1\n"), None, "line 6: '-,1' must be a number"),
     ("Arabic digits", "٠ ٠\n١ ٢\n٢ ٤\n", "g", "0 rows of numbers"),
-    ("Arabic digits inside", ROWS.replace("0.2\n", "0.٢\n"), "g", "line 2: '0.٢' must be a num"),
-    ("Arabic digits in AT2", GOOD.replace("-.1", "-.١"), None, "'-.١' must be a number"),
-    ("an Arabic count", GOOD.replace("NPTS=      7", "NPTS=      ٧"), None, "columns"),
     ("digits in groups", ROWS.replace("0.2\n", "1_000\n"), "g", "'1_000' must be a number"),
     ("NaN among samples", GOOD.replace("-.1\n", "NaN\n"), None, "line 6: NaN must be a finite"),
-    ("NaN first", GOOD.replace("0.0000000E+00", "NaN"), None, "line 5: NaN must be a finite"),
     ("NaN after the last", f"{GOOD}NaN\n", None, "line 8: NaN must be a finite number"),
-    ("NaN, no count", AT2["no count"].replace("-.1\n", "NaN\n"), None, "line 6: NaN must be"),
     ("too large", ROWS.replace("0.2\n", "1e999\n"), "g", "line 2: 1e999 must be a finite number"),
-    ("too large in SI", GOOD.replace("-.1", "1.7e308"), None, "samples[5] is inf; it must be"),
     ("too large to integrate", GOOD.replace("-.1", "1e307"), None, "must be finite"),
-    ("too fine", GOOD.replace(".0050", "1e-320"), None, "it must be from"),
     ("too long", GOOD.replace(".0050", "1e300"), None, "it must be from"),
     ("a long word", ROWS.replace("0.2\n", "9x" * 3000 + "\n"), "g", "must be a number"),
-    ("Latin-1", b"# caf\xe9, units: g\n0 0.1\n1 0.2\n", None, "line 1: the byte 0xe9 is not text"),
-    ("no text", b"\x80\x81\xfe\xff\n" + ROWS.encode(), "g", "line 1: the byte 0x80 is not text"),
     ("UTF-16", ROWS.encode("utf-16"), "g", "line 1: the byte 0xff is not text"),
-    ("zeros", b"# a\x00b\n" + ROWS.encode(), "g", r"line 1: '\x00' is not text"),
-    ("a film", b"\x89PNG\r\n\x1a\n\x00\x00", "g", "line 1: the byte 0x89 is not text"),
-    ("a unit of time", f"t (min), a (g)\n{COMMAS}", None, "line 1: its times are in 'min'"),
     ("times in ms", f"t_ms,acc_g\n{COMMAS}", None, "its times are in 'ms'"),
-    ("times in msec", f"# Time [msec], a [g]\n{ROWS}", None, "its times are in 'msec'"),
-    ("a unit of time in a remark", f"# ms\n{ROWS}", "g", "line 1 speaks of ms"),
     ("a step in ms", GOOD.replace("SEC,", "MSEC,"), None, "line 4: the step is in MSEC"),
     ("swapped names", f"a (g), t (s)\n{COMMAS}", None, "'a (g)' and 't (s)'; they must be time"),
-    ("swapped names, blanks", f"acc time\n{ROWS}", "g", "'acc' and 'time'; they must be time and"),
     ("swapped numbers", "0.1 0.00\n0.2 0.01\n0.3 0.02\n", "g", "both columns increase in equal"),
-    ("counted rows", f"sample,a (g)\n{COMMAS}", None, "'sample' and 'a (g)'"),
     ("two counts", TWICE.replace("7 points", "8 points"), None, "says 8 and 7 as number"),
     ("two steps", TWICE.replace("DT= .005", "DT= .006"), None, "says 0.005 and 0.006"),
     ("no step", GOOD.replace(", DT=   .0050 SEC,", ""), None, "says NPTS; it must say DT, too"),
@@ -93,14 +65,9 @@ DOUBTS = [
     ("after the end", f"{AT2['begin and end']}0.1\n", None, "line 10: '***' must be a number"),
     ("VT2", GOOD, None, "it must be a file of acceleration, as AT2 files are"),
     ("ASC, velocity", asc("DATA_TYPE: ACCELERATION", "DATA_TYPE: VELOCITY"), "g", "'VELOCITY'"),
-    ("ASC, its spectrum", asc(": ACCELERATION", ": SPECTRUM, ACCELERATION"), "g", "SPECTRUM"),
     ("ASC, spectrum", asc(": ACCELERATION", ": ACCELERATION SPECTRUM"), None, "SPECTRUM"),
     ("ASC, cm/s", asc("UNITS: cm/s^2", "UNITS: cm/s"), None, "line 14 states 'cm/s'"),
     ("ASC, no units", asc("UNITS: cm/s^2\n", ""), None, "does not state its units"),
-    ("ASC, other units", asc("UNITS: cm/s^2", "UNITS: mg"), "g", "it states mg; --units must not"),
-    ("ASC, no count", asc("NDATA: 7\n", ""), None, "it does not say NDATA, and must"),
-    ("ASC, no type", asc("DATA_TYPE: ACCELERATION\n", ""), None, "does not say DATA_TYPE"),
-    ("ASC, empty step", asc("_S: 0.005000", "_S:"), None, "does not say SAMPLING_INTERVAL_S"),
     ("ASC, odd count", asc("NDATA: 7", "NDATA: 7.5"), None, "line 11: NDATA is '7.5'; it must be"),
     ("ASC, twice", asc("USER1:\nUSER1:", "NDATA: 7"), None, "line 19: NDATA must not be said"),
     ("ASC, short", ASC_HEADER + ASC_COLUMN[:30], None, "holds 4 samples; it must hold the 7"),
@@ -108,19 +75,13 @@ DOUBTS = [
     ("ASC, two columns", ASC_HEADER + ASC_COLUMN.replace("\n", " 1\n"), None, "'0.000000 1'"),
     ("other units", GOOD, "m/s2", "it states g; --units must not be m/s2"),
     ("one too many", GOOD + "0.1\n", None, "holds 8 samples; it must hold the 7 of its header"),
-    ("too few", GOOD.replace(COLUMNS, "0.1 0.2\n"), None, "holds 2 samples"),
     ("a word", GOOD.replace("-.1", "x"), None, "line 6: 'x' must be a number"),
     ("no units", GOOD.replace("UNITS OF G", "V"), None, "does not state its units; --units must"),
-    ("no step at all", GOOD.replace(".0050", "0"), None, "dt is 0.0; it must be positive"),
     ("a gap", table(0, 0.1, 0.2, 0.4), None, "line 5: a gap from 0.2 to 0.4 s; steps must all be"),
     ("uneven", table(0, 0.1, 0.2, 0.31, 0.4, 0.5), None, "line 5: the time 0.31 s is not a whole"),
     ("twice", table(0, 0.1, 0.1, 0.2), None, "line 4: the time 0.1 s must be later than 0.1 s"),
-    ("back", table(0, 0.1, 0.2, 0.1), None, "line 5: the time 0.1 s must be later"),
-    ("no time", table(0, 0.1, "nan", 0.3), None, "line 4: nan must be a finite"),
     ("one row", table(0), None, "1 rows of numbers; it must have two"),
     ("nothing", "", None, "0 rows"),
-    ("no header", table(0, 0.1, header=""), None, "does not state its units"),
-    ("a station", table(0, 0.1, header="station G\n"), None, "does not state its units"),
     ("two units", table(0, 0.1, header="a (g) and b (gal)\n"), None, "several units, g, gal"),
     ("three columns", "0 1 2\n1 2 3\n", None, "line 1 has 3 columns; it must have two"),
     ("words at the end", "0 0.1\nend of data\n", None, "line 2 has 3 columns"),
@@ -131,7 +92,6 @@ DOUBTS = [
     ("touching", GOOD.replace("0.0000000E+00", "1.8E-06-1.2E-06"), None, "must stand apart"),
     ("one column", "# units: g\n0.1\n0.2\n0.3\n", None, "it has one column; --record-dt, or a"),
     ("npts dt, short", "4 0.01\n0.1\n0.2\n0.3\n", "g", "3 samples; it must hold the 4 of its"),
-    ("npts dt, no unit", "3 0.01\n0.1\n0.2\n0.3\n", None, "does not state its units"),
     ("CSMIP", "Corrected Accelerogram Caltech Vol II\n", "g", "it is a CSMIP file"),
     ("K-NET", "Origin Time       1999/01/02 03:04:05\n", "g", "it is a K-NET file"),
 ]
@@ -216,17 +176,13 @@ def test_a_record_of_ten_million_samples_is_refused_at_once(tmp_path, capsys):
         assert re.search(r"some [\d.]+ min and [\d.]+ GB; it must hold 1000000 at most", message)
 
 
-def test_a_large_file_is_refused_by_its_size(tmp_path, capsys):
-    path = tmp_path / "long.AT2"
-    path.touch()
-    os.truncate(path, MOST_BYTES + 1)
-    refused(capsys, [*ASKED, path], BEGIN, "it holds some 4000000 samples")
-
-
-def test_a_file_of_more_words_than_two_a_sample(tmp_path, capsys):
+@pytest.mark.parametrize("content", [b"0 0\n" * (MOST_SAMPLES + 5001), MOST_BYTES + 1])
+def test_a_file_that_is_too_long_is_refused_by_its_size_or_its_words(content, tmp_path, capsys):
     path = tmp_path / "long.txt"
-    path.write_text("0 0\n" * (MOST_SAMPLES + 5001))
-    refused(capsys, [*ASKED, path], BEGIN, "it holds at least 100")
+    path.write_bytes(b"" if isinstance(content, int) else content)
+    if isinstance(content, int):
+        os.truncate(path, content)
+    refused(capsys, [*ASKED, path], BEGIN, "samples")
 
 
 @pytest.mark.parametrize("form", ["no count", "table"])

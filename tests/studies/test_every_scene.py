@@ -1,19 +1,15 @@
 """Every command that takes --scene, with every scene: it does that one, or refuses it."""
 
-import inspect
 import json
 import re
 from ast import literal_eval
-from importlib import import_module
-from typing import get_args
 
 import pytest
 from commanding import refused
+from test_any_arguments import OPTIONS as KNOWN
 
 from analytic import RigidBlock, RockingFrame, SinePulse, SlidingBlock, simulate
-from studies.__main__ import COMMANDS, run
-from studies.kit.app import PLACES
-from studies.kit.scene_options import SceneName
+from studies.__main__ import run
 
 SIZES = {"width": 0.5, "height": 1.5}
 PULSE = SinePulse.in_g(0.5, omega=12.0, half_cycles=2)
@@ -24,16 +20,6 @@ SCENES = {
     "slide": (["--friction", "0.2"], SlidingBlock(**SIZES, friction=0.2)),
 }
 """Scene -> its options, and what it is."""
-
-
-def function_of(command):
-    """Return the function of a command."""
-    return import_module(f"studies.{PLACES.get(command, command)}").command
-
-
-TAKERS = [
-    name for name in COMMANDS if "standing" in inspect.signature(function_of(name)).parameters
-]
 OPTIONS = {
     "compare": ["--sources", "exact", "--json"],
     "export": ["--engine", "mujoco:fixed", "--step", "0.01", "--out", "OUT"],
@@ -48,8 +34,7 @@ def asked(command, scene, own, folder):
 
 
 def test_these_are_the_commands_that_take_a_scene():
-    assert set(TAKERS) == set(OPTIONS)
-    assert set(SCENES) == set(get_args(SceneName))
+    assert {name for name, options in KNOWN.items() if "--load" in options} == {*OPTIONS}
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -67,8 +52,7 @@ def test_a_command_does_the_scene(command, scene, tmp_path, capsys, monkeypatch)
     elif command == "export":
         script = (tmp_path / "OUT" / "block.py").read_text()
         (said,) = re.findall(r"^EXACT = (.*?)  #", script, flags=re.MULTILINE)
-        expected = exact.slips or exact.peak_ratio
-        assert literal_eval(said) == pytest.approx(expected, rel=1e-9)
+        assert literal_eval(said) == pytest.approx(exact.slips or exact.peak_ratio, rel=1e-9)
     else:
         assert filmed == [system]
 
