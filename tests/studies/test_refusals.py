@@ -81,8 +81,6 @@ validate --sources exact --step 0.1 --out DIR | --step is 0.1 | a solver or an e
 contact --out DIR --engines mujuco | --engines is 'mujuco', perhaps 'mujoco'
 export CASE --out DIR --engine mujuco:fixed | perhaps 'mujoco'
 score mujuco --out DIR | ENGINE is 'mujuco', perhaps 'mujoco'
-score pymunk --out DIR --require outcomes=٣ | --require is 'outcomes=٣'; it must be one of outcomes
-score pymunk --out DIR --require p90=1 p90=2 | --require names | :p90' twice
 contact --out DIR --sources exact | --sources is no option of contact; it takes --out, --engines
 precision --out DIR --engines mujoco | --engines is no option of precision
 compare CASE --sources exact exact | --sources names 'exact' twice | once

@@ -1,4 +1,7 @@
-"""One engine: what it predicts, at what price, where it fails, and what moved since a release."""
+"""One engine: what it predicts, at what price, where it fails, and what moved since a release.
+
+Before any case, the world of an engine of another package is checked, see `problem_of`.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ import math
 import platform
 import sys
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import replace
 from importlib.metadata import packages_distributions
 from json import dumps, loads
@@ -18,19 +21,22 @@ import numpy as np
 import pandas as pd
 from cyclopts import Parameter
 
+from analytic import RigidBlock, SinePulse
+from analytic.motion import FloatArray
 from analytic.response import Outcome
-from analytic.text import finite_number
 from engines import ENGINES
-from engines.declaration import AT_REST, Engine
+from engines.declaration import AT_REST, Engine, Stepping
 from engines.registry import OWN, UnloadableError, named
+from engines.run.run import build
 from engines.settings import perhaps
+from engines.world import ContactPhase, Moment, Step, SteppedWorld
 from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments
 from studies.kit.arguments import Out, Place
 from studies.kit.foreign import apart
 from studies.kit.identity import version_of
-from studies.kit.jobs import Job, Question, Row, answer
+from studies.kit.jobs import Job, Row, answer
 from studies.kit.options import Running
 from studies.kit.say import in_columns, one_line, out_of, part
 from studies.kit.store import check, project_version
@@ -41,14 +47,13 @@ from studies.measures.finer import cheapest_below, joint
 from studies.measures.presets import preset_of
 from studies.measures.published import LADDER, PUBLISHED, TARGETS
 from studies.measures.verdicts import Verdict
-from studies.score import probes
-from studies.sources.registry import announce, presets_of, resolve
+from studies.sources.registry import Source, announce, presets_of, resolve, scene_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SWEEP, STEPS, EXTREMES, MOMENTS, SCENES = (
-    f"score-{name}" for name in ("sweep", "steps", "extremes", "moments", "scenes")
+SWEEP, STEPS, EXTREMES, SCENES = (
+    f"score-{name}" for name in ("sweep", "steps", "extremes", "scenes")
 )
 FURTHER = {"score-frame": "frame", "score-slide": "slide"}
 """Table -> its scene."""
@@ -58,29 +63,49 @@ NOISE = 1e-6
 """Relative change of a peak up to which two results are the same."""
 CASE = ["figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p"]
 """Columns that make the name of one of the paper's cases."""
-LEAST = {"agree": "outcomes", "extreme": "extreme"}
-MOST = {"median_error": "median", "p90_error": "p90", "max_error": "max", "no_answer": "failed"}
-"""Column of a table -> what may be required of it, at least or at most."""
-MEASURES = (*LEAST.values(), *MOST.values())
+MEASURES = {
+    "agree": "outcomes",
+    "extreme": "extreme",
+    "median_error": "median",
+    "p90_error": "p90",
+    "max_error": "max",
+    "no_answer": "failed",
+}
+"""Column of a table -> what a result calls it."""
+KNOWN = {
+    SWEEP: ("peak_ratio",),
+    STEPS: ("peak_ratio", "error", "impact_error", "energy_drift"),
+    EXTREMES: ("peak_ratio", "error", "energy_growth", "slip_widths"),
+}
+"""Columns that a table has though none of its numbers may be known."""
+BLOCK = RigidBlock(width=0.5, height=1.5)
+UNFELT = SinePulse(amplitude=1e-9, omega=6.2832)
+"""What is checked of a world, on a base that stays where it is."""
+DT_S, LEAN, RATE = 5e-3, 0.25 * BLOCK.alpha, 0.1 * BLOCK.alpha * BLOCK.p
+"""Step [s], and rotation and rate to which a block is put."""
+OFF = 0.47
+"""Part of a step from which on a moment is another one: what takes 16 steps within a step has
+less."""
+TURNED = "the sign is wrong; theta is positive where it leans towards +x"
+
+
+def uses_of(name: str) -> list[str]:
+    """Return a source that names a preset, or all presets of an engine as sources."""
+    return [name] if ":" in name else [f"{name}:{preset}" for preset in presets_of(resolve(name))]
 
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return the jobs of the tables; of an engine without a preset those of all that it has."""
-    uses = list[str]()
-    for name in sources:
-        all_of_it = [f"{name}:{preset}" for preset in presets_of(resolve(name))]
-        uses += [name] if ":" in name else all_of_it
+    uses = [use for name in sources for use in uses_of(name)]
     swept = sweep.jobs(uses, quick, sweep.Options(figure=(6, 8) if quick else (6, 7, 8, 9)))
     if quick:  # every 11th case of a figure: that divides no panel's 40
         swept = [job for number, job in enumerate(swept) if number // len(uses) % 11 == 0]
     varied = [use for use in uses if preset_of(use) != AT_REST]
     along = [job for job in precision.jobs(varied, quick) if job.labels["table"] == precision.ALONG]
-    flight = Question(system=probes.BLOCK, motion=probes.UNFELT)
     tables = {
         SWEEP: swept,
         STEPS: along,
         EXTREMES: stability.matrix_jobs(uses, quick),
-        MOMENTS: [Job(labels={}, case=flight, source=use) for use in uses],
         SCENES: [job for job in scenes.jobs(uses, quick) if is_usual(job.labels)],
     }
     return [
@@ -99,17 +124,7 @@ def is_usual(labels: Mapping[str, Any]) -> bool:
 def measure(job: Job) -> Row:
     """Return what a job's table has of it."""
     of = {SWEEP: answer, STEPS: precision.measure, EXTREMES: stability.measure}
-    of |= {MOMENTS: probes.measure_moment, SCENES: scenes.measure}
-    return of[job.labels["part"]](job)
-
-
-KNOWN = {
-    SWEEP: ("peak_ratio",),
-    STEPS: ("peak_ratio", "error", "impact_error", "energy_drift"),
-    EXTREMES: ("peak_ratio", "error", "energy_growth", "slip_widths"),
-    MOMENTS: tuple(probes.UNKNOWN),
-}
-"""Columns that a table has though none of its numbers may be known."""
+    return {**of, SCENES: scenes.measure}[job.labels["part"]](job)
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
@@ -141,10 +156,7 @@ def published() -> pd.DataFrame:
 
 
 def finding(tables: Tables) -> str:
-    """Say what is wrong with its world, or else what its best preset predicts."""
-    moments = tables[MOMENTS]
-    if wrong := probes.wrong_moment(moments) or probes.wrong_quantity(moments):
-        return wrong
+    """Say what its best preset predicts."""
     lines = swept(tables).sort_values("max_error", ascending=False, kind="stable")
     best = lines.sort_values("agree", kind="stable").iloc[-1]
     return (
@@ -154,7 +166,7 @@ def finding(tables: Tables) -> str:
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
-    """Return its errors beside the published ones, its verdicts, what helps it, its moments."""
+    """Return its errors beside the published ones, its verdicts and failures."""
     extremes, along = tables[EXTREMES], precision.work_precision(tables[STEPS])
     among = {"this engine": joint(along), "published": joint(precision.engines_of(published()))}
     return {
@@ -170,8 +182,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         ),
         "Verdicts on extreme cases": stability.verdicts(extremes),
         "Failures in extreme cases": stability.failures(extremes)[["case", "source", "reason"]],
-        "The moment of a step at which its velocities hold, of which 1 is the end; by what part a "
-        "block that is let go turns too far, and with half the step": tables[MOMENTS],
         **{
             f"In the scene of a {scene}": scenes.tabulate(tables[name])[f"{scene}-summary"]
             for name, scene in FURTHER.items()
@@ -198,11 +208,9 @@ STUDY = Study(
     help="""One engine, by ENGINE or ENGINE:PRESET, MODULE:ENGINE or MODULE:build.
 
 The paper's cases with each of its presets, its errors along the step beside the published engines,
-its verdicts on extreme cases, slides and frames, and whether its velocities hold at the `Moment`
-that its world declares. With --require or --against, the exit code is 1 where a requirement falls
-short, and 0 whatever else failed; it is 1 where the world declares another `Moment` than the one at
-which its velocities hold, or where an error that does not shrink with the step tells of a wrong
-inertia, size or gravity.""",
+its verdicts on extreme cases, slides and frames. With --against, the exit code is 0 whatever
+failed. A world that lacks a method, turns the wrong way round, or declares another `Moment` than
+the one at which its velocities hold is refused.""",
     jobs=jobs,
     measure=measure,
     tabulate=tabulate,
@@ -225,7 +233,6 @@ def command(
     *,
     out: Out = Path("score"),
     quick: bool = False,
-    require: Annotated[tuple[str, ...] | None, arguments.several_or_none] = None,
     json: Place | None = None,
     against: Place | None = None,
     running: Running = STUDY.running,
@@ -240,10 +247,6 @@ def command(
         installed packages.
     quick
         Every 11th case of two figures, every other step, fewer extremes: a minute or two.
-    require
-        outcomes=N: at least so many right; median=E, p90=E, max=E: largest relative error of the
-        peak; failed=N: at most so many without an answer; extreme=N: at least so many extreme cases
-        right. Of the best preset, or as in fixed:p90=1e-3.
     json
         File for the result.
     against
@@ -252,31 +255,21 @@ def command(
     name = known(engine)
     declared = scored(name)
     # what cannot be compared with it is refused now, and not after the last run
-    requirements = [required(text, declared) for text in require or ()]
-    if require is not None:
-        asked = [f"{preset}:{what}" for preset, what, _ in requirements]
-        arguments.refuse_repeats("--require", asked)
     earlier = against and read(against, declared)
     published()
     if json:
         arguments.check_writable("--json", json)
     if declared.name not in OWN:
         with suppress(UnloadableError):  # its cases will say so
-            if problem := apart(probes.problem_of, f"{declared.name}:{declared.best.name}"):
+            if problem := apart(problem_of, name):
                 raise BadInputError(f"ENGINE is {engine!r}: {problem}")
     code = STUDY.carry_out(out, jobs([name], quick), running, engine=name, quick=quick)
-    tables = STUDY.read(out)
-    result = result_of(tables, declared)
+    result = result_of(STUDY.read(out), declared)
     if json:
         write_text(json, dumps(result, indent=1, ensure_ascii=False) + "\n")
     if earlier:
         print("\n" + since(earlier, result))
-    held = [holds(requirement, result) for requirement in requirements]
-    print(*(line for _, line in held), sep="\n", end="\n" * bool(held))
-    if earlier or held:
-        code = int(not all(good for good, _ in held))
-    moments = tables[MOMENTS]
-    return code or int(bool(probes.wrong_moment(moments) or probes.wrong_quantity(moments)))
+    return 0 if earlier else code
 
 
 def known(engine: str) -> str:
@@ -303,31 +296,92 @@ def scored(source: str) -> Engine:
     return replace(engine, presets=(engine.preset(preset),)) if colon else engine
 
 
-def required(text: str, engine: Engine) -> tuple[str, str, float]:
-    """Read [PRESET:]MEASURE=NUMBER: the preset, by default the best, the measure, and its bound."""
-    name, _, number = text.partition("=")
-    preset, colon, measured = name.rpartition(":")
-    presets = [use.name for use in engine.presets]
-    bound = math.nan
-    with suppress(ValueError):
-        bound = finite_number(number)
-    if not (measured in MEASURES and preset in (presets if colon else [""]) and bound >= 0.0):
-        raise BadInputError(
-            f"--require is {text!r}; it must be one of {', '.join(MEASURES)}, then = and a number, "
-            f"0 or more; {' or '.join(presets)} and a colon may stand before it"
-        )
-    return preset or engine.best.name, measured, bound
+def problem_of(engine: str) -> str:
+    """Say in a line what the world of one of an engine's presets does wrong, if any does.
+
+    A world lacks a method, turns the wrong way round, or declares another `Moment` than that at
+    which its velocities hold. What it raises is no matter of this: its cases will say so.
+    """
+    for use in uses_of(engine):
+        with suppress(BaseException):
+            if problem := _lacking(resolve(use)) or _wrong_motion(resolve(use)):
+                return f"{problem} ({use})"
+    return ""
 
 
-def holds(requirement: tuple[str, str, float], result: Mapping[str, Any]) -> tuple[bool, str]:
-    """Return whether a result holds a requirement, and a line of what was required and found."""
-    preset, measured, bound = requirement
-    found = result["presets"][preset][measured]
-    value, least = math.nan if found is None else found, measured in LEAST.values()
-    good = value >= bound if least else value <= bound
-    side = f"at {'least' if least else 'most'} {bound:g}, and is {value:.6g}"
-    verdict = "holds" if good else "falls short"
-    return good, f"{verdict}: {preset}:{measured} must be {side}"
+def world_of(source: Source, start: tuple[float, float] = (0.0, 0.0)) -> SteppedWorld:
+    """Build a block on a base that is not moved."""
+    frame = "base" if "base" in source.declared.frames else None  # a base that moves is pulled, too
+    step = DT_S * BLOCK.p
+    scene = scene_of(BLOCK, UNFELT, source.preset, step=step, frame=frame, start=start)
+    world: Any = build(source.declared.use(scene))
+    return world  # type: ignore[no-any-return]
+
+
+def _lacking(source: Source) -> str:
+    """Say which method or moment a world lacks, or how its state has the wrong sign."""
+    world = world_of(source, (LEAN, RATE))
+    steps = source.used.stepping is not Stepping.OWN
+    whole = ("state", "fault", "close", "step" if steps else "advance")
+    for method in whole:
+        if not callable(getattr(world, method, None)):
+            return f"its world has no method {method}; it must have {', '.join(whole)}"
+    if not isinstance(getattr(world, "moment", None), Moment):
+        return "its world has no moment; it must be one of Moment.MIDDLE, END and NEXT"
+    with closing(world):
+        pose = np.asarray(world.state(), float)
+    if pose.shape != (1, 4):
+        return f"its state has the shape {pose.shape}; it must be (1, 4): x, z, theta, rate"
+    for what, found, put in (("theta", pose[0, 2], LEAN), ("rate", pose[0, 3], RATE)):
+        if abs(found + put) < 0.01 * put:
+            return f"its state says {what} {found:.3g} of a block put to {put:.3g}: {TURNED}"
+    return ""
+
+
+def _wrong_motion(source: Source) -> str:
+    """Say how a pulled block turns the wrong way round, or at which moment its velocities hold."""
+    if source.used.stepping is Stepping.OWN:
+        return ""
+    if "base" in source.declared.frames:
+        g, onset = BLOCK.gravity, BLOCK.gravity * math.tan(BLOCK.alpha)
+        theta = pulled(source, [2.0 * onset] * 28, [-g] * 28, 1.0)[-1, 2]
+        if theta < -1e-3:
+            return f"pulled towards +x, its block turns to theta {theta:.3g}: {TURNED}"
+    declared, measured = world_of(source).moment, measured_moment(source)
+    if not abs(measured - declared.value) >= OFF:
+        return ""
+    nearest = min(Moment, key=lambda moment: abs(moment.value - measured))
+    return (
+        f"its velocities hold {measured - declared.value:+.2g} of a step from the "
+        f"Moment.{declared.name} that its world declares; it must declare Moment.{nearest.name}"
+    )
+
+
+def measured_moment(source: Source) -> float:
+    """Return the part of a step after which its velocity holds; nan if no pull moves a block so.
+
+    A block is thrown off its base, left alone, and pulled during one step. How much of the velocity
+    gained moves it within that step says what comes first: all of it where the velocity is changed
+    first, half where both go together, none where the position is changed first.
+    """
+    pull = 10.0 * BLOCK.gravity
+    ups = [pull] * 4 + [0.0] * 24 + [-pull] + [0.0] * 4
+    heights = pulled(source, [0.0] * len(ups), ups, 0.0)[:, 1]
+    before, within, after = np.diff(heights)[[-6, -5, -1]]
+    if not 0.5 < (before - after) / (pull * DT_S**2) < 2.0:
+        return math.nan  # its cases will say so
+    return float(Moment.NEXT.value - (within - before) / (after - before))
+
+
+def pulled(source: Source, along: list[float], up: list[float], side: float) -> FloatArray:
+    """Return the poses of a block that is pulled along and up its base [m/s2], step by step."""
+    with closing(world_of(source)) as world:
+        poses = [np.array(world.state(), float)[0]]
+        for number, (x, z) in enumerate(zip(along, up, strict=True), start=1):
+            phase = ContactPhase.SWING, side
+            world.step(Step(DT_S, number * DT_S, DT_S, x, z, 0.0, 0.0, 0.0, *phase))
+            poses.append(np.array(world.state(), float)[0])
+    return np.array(poses)
 
 
 def result_of(tables: Tables, engine: Engine) -> dict[str, Any]:
@@ -336,9 +390,9 @@ def result_of(tables: Tables, engine: Engine) -> dict[str, Any]:
     presets: for each its `MEASURES`, an error being None where no peak survives, and how many cases
     and extremes these are of. peaks: for each preset and case that of a block which rocked, over
     its critical rotation, or the outcome of another; a case is called by its `CASE` with slashes
-    between, or extreme/NAME. moments: for each preset the declared and the measured one, in steps.
+    between, or extreme/NAME.
     """
-    cases, extremes, moments = (tables[name] for name in (SWEEP, EXTREMES, MOMENTS))
+    cases, extremes = tables[SWEEP], tables[EXTREMES]
     names = ["/".join(map(str, case)) for case in cases[CASE].itertuples(index=False)]
     rows = pd.concat(
         [cases.assign(case=names), extremes.assign(case="extreme/" + extremes["case"])]
@@ -348,26 +402,20 @@ def result_of(tables: Tables, engine: Engine) -> dict[str, Any]:
     valid = extremes[extremes["verdict"] != Verdict.INVALID.value]
     good = (valid["verdict"] == Verdict.GOOD.value).groupby(valid["source"])
     lines = swept(tables).set_index("source").join(good.agg(extreme="sum", extremes="count"))
-    lines = lines.rename(columns=LEAST | MOST)
+    lines = lines[["cases", "extremes", *MEASURES]].rename(columns=MEASURES, index=preset_of)
+    lines = lines.astype(object).where(lines.notna(), None)
     packages = engine.packages or packages_distributions().get(engine.library, ())
     versions = {"rocking": project_version(), "python": platform.python_version()}
     return {
         "schema": SCHEMA,
         "engine": engine.name,
         "versions": versions | {name: version_of(name) for name in packages},
-        "presets": by_preset(lines[["cases", "extremes", *MEASURES]]),
+        "presets": lines.to_dict("index"),
         "peaks": {
             preset_of(str(source)): dict(zip(group["case"], group["peak"], strict=True))
             for source, group in rows.groupby("source", sort=False)
         },
-        "moments": by_preset(moments.set_index("source")[["declared", "measured"]]),
     }
-
-
-def by_preset(table: pd.DataFrame) -> dict[Any, dict[Any, Any]]:
-    """Return the lines of a table of sources by their presets, None where a number is missing."""
-    numbers = table.rename(index=preset_of).astype(object)
-    return numbers.where(numbers.notna(), None).to_dict("index")
 
 
 def read(path: Path, engine: Engine) -> dict[str, Any]:
