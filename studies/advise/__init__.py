@@ -1,5 +1,291 @@
-"""Which setting of which engine for which accuracy, and which one mends what users see."""
+"""Which published setting keeps an error at the least cost, and what halves a symptom."""
 
-from studies.advise.advice import STUDY, command
+from __future__ import annotations
 
-__all__ = ["STUDY", "command"]
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from textwrap import fill, indent
+from typing import TYPE_CHECKING, Annotated, Any
+
+import pandas as pd
+from cyclopts import Parameter
+
+from analytic.block import RigidBlock
+from engines import ENGINES
+from engines.declaration import Preset, Stepping
+from studies.advise import symptoms as seen
+from studies.advise.symptoms import settings_in_words
+from studies.kit.arguments import (
+    Engines,
+    NotNegative,
+    Place,
+    Positive,
+    as_bad_input,
+    refuse_given,
+    refuse_repeats,
+    several,
+)
+from studies.kit.jobs import Row
+from studies.kit.options import Running, check_written
+from studies.kit.say import WIDTH, as_text, duration
+from studies.kit.scene_options import Height, Width, block_of
+from studies.kit.store import check
+from studies.kit.study import Study, Tables
+from studies.measures import published as known
+from studies.measures.costs import OUTDATED, STEPPED
+from studies.measures.differences import WELL_CONDITIONED
+from studies.measures.finer import cheapest_kept
+from studies.measures.presets import look_of, uses_of
+from studies.measures.published import PUBLISHED, TARGETS, options_at
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+TABLES = (known.LADDER, *known.PAPER, known.RANDOM)
+NONE_FOUND: Row = {
+    **dict.fromkeys(("value", "dt_s", "wall_s", "max_error"), math.nan),
+    **dict.fromkeys(("runs", "cases", *known.COUNTS), 0),
+}
+"""Columns about a setting, where there is none."""
+OWN_FRICTION = "The errors were measured with each preset's own friction."
+
+
+def command(
+    *,
+    error: Annotated[tuple[Positive, ...], several] = TARGETS,
+    engines: Annotated[Engines | None, Parameter(name=("--engines", "--engine"))] = None,
+    symptoms: bool = False,
+    dt: Positive | None = None,
+    friction: NotNegative | None = None,
+    width: Width = 0.5,
+    height: Height = 1.5,
+    out: Place | None = None,
+) -> int:
+    """Name the cheapest setting of every engine with which all published cases keep an error.
+
+    For each engine and preset the cheapest step that keeps the error with every finer one: on the
+    24 cases along all steps, on the paper's with each preset as it is declared, and on random cases
+    where κ is small. Beside it stands how many random cases are off there. It runs nothing: it
+    reads the published tables.
+
+    Parameters
+    ----------
+    error
+        Largest relative errors [-] of the peak rotation that are to be kept.
+    engines
+        Names of engines, without a preset, of those in the published tables. Of one alone the
+        settings are written out.
+    symptoms
+        Instead, what users see (a block creeps, sinks, bounces, tips too early, ...): its size with
+        the library's defaults, with the one setting that helps most, and with all that is tuned.
+    dt
+        Your step [s], instead of errors: which error each preset with equal steps keeps with it.
+        Settings are written out for it; by default, beside --symptoms, for the library's own.
+    friction
+        Coefficient of friction for which settings are written out: some, as MuJoCo's impratio,
+        belong to it. By default 0.8, beside --symptoms the library's own.
+    out
+        Folder for the table and its figure; none by default.
+    """
+    refuse_repeats("--error", error)
+    check_written(dt)
+    beside = {"error": None if error is TARGETS else error[0]}
+    if symptoms:
+        refuse_given(beside, "only without --symptoms")
+    elif dt is not None:
+        refuse_given({**beside, "out": out}, "only without --dt")
+    check(PUBLISHED, seen.TABLES if symptoms else TABLES, "the published tables")
+    asked = engines or tuple(known.along_steps(PUBLISHED, list(ENGINES))["engine"].unique())
+    block, note = block_of(width, height), OWN_FRICTION
+    with as_bad_input():
+        if symptoms:
+            tables = {"symptoms": seen.find(asked)}
+            written, note = seen.write(tables["symptoms"], block, dt, friction), seen.HALVES
+        elif dt is not None:
+            tables = {"step": find_errors(asked, block, dt)}
+            written = write(tables["step"], block, friction)
+        else:
+            tables = {"advice": find(asked, error, block)}
+            written, note = write(tables["advice"], block, friction), f"{STEPPED} {OUTDATED} {note}"
+        alone = "With one --engine its settings are written out, too, in the library's words."
+        details = list(written) if len(asked) == 1 else [alone]
+    if out is None:
+        print(as_text(finding(tables), shown(tables)))
+    else:
+        how = {"dt": dt, "friction": friction} if symptoms else {"error": error}
+        size = {"width": width, "height": height}
+        study = replace(STUDY, name="symptoms" if symptoms else "advise", tabulate=lambda _: tables)
+        study.carry_out(out, [], Running(), engines=asked, **size, **how)
+    print("", *details, fill(note, WIDTH), sep="\n\n")
+    return 0
+
+
+def find(engines: Sequence[str], targets: Sequence[float], block: RigidBlock) -> pd.DataFrame:
+    """Return the columns of advice.csv: for each error, engine and preset its cheapest setting.
+
+    A setting counts if it keeps the error with every finer one: a coarse step may be lucky.
+    """
+    settings, runs = known.settings(PUBLISHED, engines), known.random_runs(PUBLISHED)
+    rows: list[Row] = []
+    for target in targets:
+        table = known.counted(settings, runs, target)
+        for engine, preset in ((name, use) for name in engines for use in uses_of(name)):
+            mine = table[(table["engine"] == engine) & (table["preset"] == preset.name)]
+            row = {"target": target, "engine": engine, "preset": preset.name, **NONE_FOUND}
+            best = cheapest_kept(mine, keeps(mine, target))
+            if best is None:
+                rows.append({**row, "message": why(mine, preset, target)})
+                continue
+            value = float(best["value"])
+            own = math.nan if preset.accuracy_knob else preset.step_s
+            at = own if preset.accuracy_knob or math.isnan(value) else value / block.p
+            rows.append(row | {name: best[name] for name in NONE_FOUND if name in best})
+            rows[-1] |= {"dt_s": at, "message": ""}
+    lines = pd.DataFrame(rows)
+    least = lines.groupby(["target", "engine"])["wall_s"].transform("min")
+    return lines.assign(cheapest=lines["wall_s"] == least)
+
+
+def keeps(settings: pd.DataFrame, target: float) -> pd.Series[bool]:
+    """Return which settings keep an error by themselves, whatever finer ones do."""
+    return (settings["max_error"] <= target) & (settings["random_calm_off"] == 0)
+
+
+def why(settings: pd.DataFrame, preset: Preset, target: float) -> str:
+    """Say how near to an error the settings of a preset come, from coarse to fine."""
+    if settings.empty:
+        return "it is not in the published tables"
+    alone = settings[keeps(settings, target)]
+    if len(alone):
+        return f"{name_of(preset, alone['value'].iloc[-1])} keeps it, but not every finer one"
+    best = settings.sort_values("max_error").iloc[0]
+    error, calm = float(best["max_error"]), best["random_calm_off"]
+    if math.isinf(error):
+        return "an outcome is wrong at every step"
+    off = f"; random cases with κ < {WELL_CONDITIONED:g} that are off: {calm}" if calm else ""
+    return f"at best the error is {100.0 * error:.3g} % at {name_of(preset, best['value'])}{off}"
+
+
+def name_of(preset: Preset, value: float) -> str:
+    """Return a setting in words: its p dt, its accuracy knob, or the library's own step."""
+    if math.isnan(value):
+        return "its own step"
+    return f"{preset.accuracy_knob[0] if preset.accuracy_knob else 'p dt'} = {value:g}"
+
+
+def preset_of(line: Mapping[Any, Any] | pd.Series[Any]) -> Preset:
+    """Return the preset of a line of a table."""
+    return ENGINES[str(line["engine"])].preset(str(line["preset"]))
+
+
+def find_errors(engines: Sequence[str], block: RigidBlock, dt_s: float) -> pd.DataFrame:
+    """Return for each preset with equal steps the largest errors at the next coarser step [s].
+
+    Columns: engine, preset, dt_s; value, its p dt; coarser, p dt of the finest published step that
+    is no finer, nan where there is none; and for both sets of cases the largest error of the peak
+    at it and every finer published step, inf where an outcome is wrong.
+    """
+    table, value = pd.read_csv(PUBLISHED / known.LADDER), dt_s * block.p
+    table["max_error"] = table["max_error"].where(table["failed"] == 0, math.inf)
+    lines = []
+    for engine, use in ((name, use) for name in engines for use in uses_of(name)):
+        if use.stepping is Stepping.FIXED:
+            mine = table[table["method"] == f"{engine} {use.name}"]
+            at = mine.loc[mine["value"] >= value * (1.0 - 1e-9), "value"].min()
+            worst = mine[mine["value"] <= at].groupby("set")["max_error"].max()
+            line = {"engine": engine, "preset": use.name, "dt_s": dt_s, "value": value}
+            sets = worst.reindex(["typical", "near overturning"])
+            lines.append({**line, "coarser": at, **sets, "message": ""})
+    return pd.DataFrame(lines)
+
+
+def write(lines: pd.DataFrame, block: RigidBlock, friction: float | None) -> Iterator[str]:
+    """Yield each setting of some lines in the library's words; ValueError of a bad friction."""
+    at = 0.8 if friction is None else friction
+    found = lines[lines["message"] == ""].drop_duplicates(["engine", "preset", "value"])
+    for _, line in found.iterrows():
+        preset, value = preset_of(line), float(line["value"])
+        here = "" if math.isnan(line["dt_s"]) else f", DT = {line['dt_s']:.6g} s"
+        title = f"{ENGINES[line['engine']].title}, {preset.title}"
+        options = {"friction": at, **options_at(preset, value)}
+        parts = settings_in_words(line["engine"], preset.name, block, None, **options)
+        if helps := "; ".join(each.value for each in preset.helped_by):
+            parts += (f"and at every step, by no setting of the library: {helps}",)
+        text = indent("\n".join(parts), "  ")
+        yield f"{title}, {name_of(preset, value)}{here}, friction {at:g}\n{text}"
+
+
+def finding(tables: Tables) -> str:
+    """Say which engine keeps the smallest error at the least cost, or what a step or setting is."""
+    if "symptoms" in tables:
+        return seen.finding(tables["symptoms"])
+    if "step" in tables:
+        line = tables["step"].iloc[0]
+        return f"A step of {line['dt_s']:g} s is p dt = {line['value']:.3g} for your block."
+    lines = tables["advice"]
+    kept = lines[lines["message"] == ""]
+    if kept.empty:
+        return f"No published setting keeps an error of {100.0 * lines['target'].max():g} %."
+    best = kept[kept["target"] == kept["target"].min()].nsmallest(1, "wall_s").iloc[0]
+    return (
+        f"{ENGINES[best['engine']].title} ({look_of(best['preset']).short}) keeps an error of "
+        f"{100.0 * best['target']:g} % at the least cost, {duration(best['wall_s'])} a case."
+    )
+
+
+def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+    """Return the cheapest settings that keep each error, and what no setting keeps."""
+    if "symptoms" in tables:
+        return seen.shown(tables["symptoms"])
+    if "step" in tables:
+        title = (
+            "Largest error of the peak in published cases at the next coarser published p dt and "
+            "every finer one,\nfor presets with equal steps (inf: an outcome is wrong)"
+        )
+        return {title: tables["step"].drop(columns=["dt_s", "value", "message"])}
+    lines, use = tables["advice"], ["target", "engine", "preset"]
+    kept = lines[lines["message"] == ""]
+    own = kept[[not preset_of(line).helped_by for _, line in kept.iterrows()]]
+    return {
+        f"The least cost of each error, with {settings}": (
+            among.sort_values("wall_s").drop_duplicates("target").sort_index()
+        )[[*use, "value", "wall_s", "runs"]]
+        for settings, among in (("any setting", kept), ("a library's own settings alone", own))
+    } | {
+        "The cheapest setting that keeps each error with every finer one (value: p dt, or an "
+        "engine's own accuracy;\ndt_s for your block), and how many random cases are off at this "
+        "very setting": kept.drop(columns=["random_calm_off", "message"]),
+        "The largest error that no setting of a preset keeps, and why": (
+            lines.loc[lines["message"] != "", [*use, "message"]].drop_duplicates(use[1:])
+        ),
+    }
+
+
+def figures(tables: Tables) -> Mapping[str, Figure]:
+    """Draw the time of a case with each preset that keeps an error, or the size of symptoms."""
+    from studies.drawing.advise import draw_advice, draw_symptoms
+
+    drawings = {"advice": draw_advice, "symptoms": draw_symptoms}
+    return {name: drawings[name](table, finding(tables)) for name, table in tables.items()}
+
+
+STUDY = Study(
+    name="advise",
+    question="Which setting of which engine for which accuracy?",
+    help="It runs nothing: it reads the published tables.",
+    jobs=lambda *_: (),
+    tabulate=lambda _: {},
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    texts=seen.TEXTS,
+    captions={
+        "advice": "Time of a case with each preset that keeps an error with every finer step, a "
+        "panel for each error, a row for each engine; at the points their steps, p dt, or the "
+        "accuracy of an engine's own.",
+        "symptoms": "What users of an engine see, a panel for each symptom, a row for each engine, "
+        "its size on a logarithmic scale: as documented, with the one setting that helps most, "
+        "with all of a contact tuned at equal steps, and with steps that land on impacts.",
+    },
+)

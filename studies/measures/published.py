@@ -14,12 +14,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analytic import simulate
 from engines import ENGINES
 from engines.declaration import Preset
-from studies.cases.paper import SWEEPS, sweep_cases
-from studies.cases.refusal import BadInputError
-from studies.kit.store import check
+from studies.cases.paper import sweep_cases
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.finer import joint
 from studies.measures.presets import uses_of
@@ -30,32 +27,6 @@ PUBLISHED = Path(__file__).parents[1] / "published"
 COLUMNS = Path(__file__).with_name("columns.csv")
 """What each column means, in all tables or in the one that its line names: text, boolean, integer
 (a count) or number; its unit, "-" without one; and its meaning."""
-
-
-def published_in(folder: Path | None, names: Sequence[str]) -> Path:
-    """Return the folder that --published names, or PUBLISHED; refuse one without some tables.
-
-    The tables are named as chapter/file.csv; one that was edited is refused, too.
-    """
-    found = folder or PUBLISHED
-    if missing := [name for name in names if not (found / name).is_file()]:
-        raise BadInputError(f"--published is {str(found)!r}; it must hold {missing[0]}")
-    check(found, names, "--published")
-    return found
-
-
-def too_slippery(friction: float | None) -> str:
-    """Say in how many of the paper's cases the exact solution needs more friction, or nothing."""
-    if friction is None:
-        return ""
-    needed = [simulate(case.block, case.motion).friction_needed for case in sweep_cases(SWEEPS)]
-    if not (short := sum(each > friction for each in needed)):
-        return ""
-    return (
-        f"With friction {friction:g} a block slides in {short} of the paper's {len(needed)} "
-        f"cases, which need up to {max(needed):.3g}; what was published was measured with the "
-        "presets' own friction."
-    )
 
 
 @cache
@@ -72,6 +43,11 @@ def column_of(table: str, name: str) -> tuple[str, ...]:
     """Return type, unit and meaning of a column of a table, as "stability/steps"; or KeyError."""
     known = columns()
     return known.get((table, name)) or known["", name]
+
+
+def meaning_of(measure: str) -> str:
+    """Return what a column measures, for the head of a table."""
+    return column_of("", measure)[-1].partition(";")[0].replace("|", "∣")
 
 
 def dictionary(published: Path) -> pd.DataFrame:

@@ -1,5 +1,6 @@
-"""Advice: the cheapest published setting that keeps an error, and the library's words for it."""
+"""Advice: the cheapest published setting that keeps an error, what halves a symptom, in words."""
 
+import csv
 import math
 import re
 from pathlib import Path
@@ -10,40 +11,45 @@ from commanding import refused
 from given import BLOCK
 
 from engines import ENGINES
-from engines.declaration import AT_REST
+from engines.declaration import AT_REST, DEFAULT, OWN_STEPS
 from studies.__main__ import run
-from studies.advise.advice import TABLES, find, finding, keeps, why, write
-from studies.kit.tables import table_in
+from studies.advise import find, find_errors, finding, keeps, why, write
+from studies.advise import symptoms as seen
+from studies.kit.tables import read_table, table_in
 from studies.measures.finer import cheapest_kept
 from studies.measures.published import (
+    LADDER,
     PUBLISHED,
-    RANDOM,
     TARGETS,
+    along_steps,
     counted,
     random_runs,
     settings,
 )
 
 CORE = [name for name, engine in ENGINES.items() if engine.core]
+KNOWN = list(along_steps(PUBLISHED, list(ENGINES))["engine"].unique())
 LANDING = ENGINES["mujoco"].preset("landing")
 
 
-def test_the_published_advice_follows_from_the_published_tables():
-    kept = table_in(PUBLISHED / "advice", "advice")
-    today = find(PUBLISHED, list(kept["engine"].unique()), TARGETS, BLOCK)
-    assert ((today["message"] == "") == (kept["message"] == "")).all()
-    numbers = [name for name in kept if name != "message"]
-    pd.testing.assert_frame_equal(today[numbers], kept[numbers], check_dtype=False, rtol=1e-12)
+@pytest.fixture(scope="module")
+def symptoms():
+    return seen.find(KNOWN)
+
+
+def test_the_published_advice_follows_from_the_published_tables(symptoms):
+    for name, today in (("advice", find(KNOWN, TARGETS, BLOCK)), ("symptoms", symptoms)):
+        kept = table_in(PUBLISHED / name, name, *seen.TEXTS)
+        pd.testing.assert_frame_equal(today, kept, check_dtype=False, rtol=1e-12)
 
 
 @pytest.mark.parametrize("target", [1.0, 1e-2, 1e-9])
 def test_what_is_advised_keeps_the_error_with_every_finer_step_and_nothing_cheaper_does(target):
     known = counted(settings(PUBLISHED, CORE), random_runs(PUBLISHED), target)
-    lines = find(PUBLISHED, CORE, [target], BLOCK)
+    lines = find(CORE, [target], BLOCK)
     uses = {(name, use.name) for name in CORE for use in ENGINES[name].presets}
-    assert {use for use in uses if use[1] != AT_REST} == set(
-        zip(lines["engine"], lines["preset"], strict=True)
-    )
+    asked = set(zip(lines["engine"], lines["preset"], strict=True))
+    assert {use for use in uses if use[1] != AT_REST} == asked
     for row in lines.itertuples():
         mine = known[(known["engine"] == row.engine) & (known["preset"] == row.preset)]
         kept = []
@@ -59,31 +65,25 @@ def test_what_is_advised_keeps_the_error_with_every_finer_step_and_nothing_cheap
             assert math.isnan(row.wall_s) and not row.cheapest
 
 
-def table_of(*lines):
-    """Return settings from coarse to fine: value, time, error, and off among 50 random cases."""
-    names = ["value", "wall_s", "max_error", "random_off", "random_calm_off"]
-    return pd.DataFrame(lines, columns=names).assign(random_cases=50)
-
-
-LUCKY = [(5e-3, 0.02, 4e-3, 0, 0), (2e-3, 0.09, math.inf, 0, 0), (1e-3, 0.1, 6e-3, 0, 0)]
+LUCKY = [(5e-3, 0.02, 4e-3, 0), (2e-3, 0.09, math.inf, 0), (1e-3, 0.1, 6e-3, 0)]
 
 
 @pytest.mark.parametrize(
     ("lines", "value", "reason"),
     [
         (LUCKY, 1e-3, ""),
-        ([*LUCKY, (5e-4, 0.3, 2e-2, 0, 0)], None, r"0.001 keeps it.* 2 % at p dt = 0.0005"),
-        ([*LUCKY, (5e-4, 0.05, 2e-3, 0, 0)], 5e-4, ""),
-        ([(5e-3, 0.02, 4e-3, 3, 0), (2e-3, 0.09, 3e-3, 2, 0)], 5e-3, ""),
-        ([(5e-3, 0.02, 4e-3, 1, 1), (2e-3, 0.09, 3e-3, 0, 0)], 2e-3, ""),
-        ([(5e-3, 0.02, 4e-3, 0, 0), (2e-3, 0.09, 3e-3, 9, 2)], None, r"9 of 50 .*0.002, 2 of "),
-        ([(5e-3, 0.02, 0.3, 0, 0), (2e-3, 0.09, 0.2, 0, 0)], None, r"best .* 20 % at p dt = 0.002"),
-        ([(5e-3, 0.02, math.inf, 0, 0)], None, "wrong at every step"),
+        ([*LUCKY, (5e-4, 0.3, 2e-2, 0)], None, "0.001 keeps it, but"),
+        ([*LUCKY, (5e-4, 0.05, 2e-3, 0)], 5e-4, ""),
+        ([(5e-3, 0.02, 4e-3, 1), (2e-3, 0.09, 3e-3, 0)], 2e-3, ""),
+        ([(5e-3, 0.02, 4e-3, 0), (2e-3, 0.09, 3e-3, 2)], None, "0.005 keeps it, but"),
+        ([(5e-3, 0.02, 4e-3, 3), (2e-3, 0.09, 3e-3, 2)], None, "0.3 % at p dt = 0.002; .* 2"),
+        ([(5e-3, 0.02, 0.3, 0), (2e-3, 0.09, 0.2, 0)], None, "best .* 20 % at p dt = 0.002"),
+        ([(5e-3, 0.02, math.inf, 0)], None, "wrong at every step"),
         ([], None, "published"),
     ],
 )
 def test_a_lucky_step_and_one_with_a_well_conditioned_miss_are_not_advised(lines, value, reason):
-    table = table_of(*lines)
+    table = pd.DataFrame(lines, columns=["value", "wall_s", "max_error", "random_calm_off"])
     best = cheapest_kept(table, keeps(table, 1e-2)) if lines else None
     assert (best is None) == (value is None) and (best is None or best["value"] == value)
     if best is None:
@@ -91,7 +91,7 @@ def test_a_lucky_step_and_one_with_a_well_conditioned_miss_are_not_advised(lines
 
 
 def test_the_finding_names_the_cheapest_of_the_smallest_error():
-    lines = find(PUBLISHED, CORE, [0.1, 1e-4], BLOCK)
+    lines = find(CORE, [0.1, 1e-4], BLOCK)
     best = lines[lines["target"] == 1e-4].nsmallest(1, "wall_s").iloc[0]
     sentence = finding({"advice": lines})
     assert ENGINES[best["engine"]].title in sentence and "0.01 %" in sentence
@@ -99,32 +99,100 @@ def test_the_finding_names_the_cheapest_of_the_smallest_error():
     assert "0.01 %" in finding({"advice": lines.assign(target=1e-4, message="none")})
 
 
+def ladder(method):
+    """Return (set, p dt, largest error) of a method, read line by line."""
+    with (PUBLISHED / LADDER).open(newline="") as file:
+        return [
+            (line["set"], float(line["value"]),
+             math.inf if int(line["failed"]) else float(line["max_error"]))
+            for line in csv.DictReader(file) if line["method"] == method
+        ]  # fmt: skip
+
+
+SETS = ("typical", "near overturning")
+
+
+@pytest.mark.parametrize("dt", [1e-4, 0.002, 0.01])
+def test_the_error_of_a_step_is_the_largest_at_the_next_coarser_and_all_finer(dt):
+    kept, p_dt = find_errors(KNOWN, BLOCK, dt), dt * BLOCK.p
+    assert list(kept["preset"]) == ["naive", "recommended", "fixed"] * len(KNOWN)
+    for _, line in kept.iterrows():
+        known = ladder(f"{line['engine']} {line['preset']}")
+        coarser = min(value for _, value, _ in known if value >= p_dt)
+        assert line["coarser"] == coarser
+        for name in SETS:
+            errors = [e for of, value, e in known if of == name and value <= coarser]
+            assert line[name] == max(errors)
+
+
+def test_a_published_step_is_its_own_and_none_is_as_coarse_as_a_long_one():
+    exactly = find_errors(["mujoco"], BLOCK, 0.01 / BLOCK.p)
+    assert exactly["coarser"].tolist() == [0.01, 0.01, 0.01]
+    long = find_errors(["mujoco"], BLOCK, 0.9)
+    assert long[["coarser", *SETS]].isna().all(axis=None)
+
+
 @pytest.mark.parametrize("engine", CORE)
-def test_settings_are_written_for_the_block_and_the_step(engine):
-    line = {"engine": engine, "preset": "fixed", "value": 2e-4, "dt_s": 2e-4 / BLOCK.p}
-    (text,) = write(pd.DataFrame([{**line, "message": ""}]), BLOCK, 0.8)
-    assert repr(2e-4 / BLOCK.p) in text and "0.8" in text and "DT" not in text.partition("\n")[2]
+def test_settings_are_written_for_the_block_the_step_and_the_friction(engine):
+    (text,) = write(find_errors([engine], BLOCK, 0.0037).tail(1), BLOCK, 0.7)
+    assert "0.0037" in text and "0.7" in text.partition("\n")[2]
     assert "375.0" in text or "0.25" in text  # its mass [kg], or half its width [m]
-    (text,) = write(pd.DataFrame([line]), BLOCK, 0.8)  # of a given step
-    assert "DT" in text.partition("\n")[2] and repr(2e-4 / BLOCK.p) in text
 
 
-@pytest.mark.parametrize(("asked", "friction"), [([], 0.8), (["--friction", "10"], 10.0)])
-def test_impratio_is_written_with_the_friction_that_it_belongs_to(asked, friction, capsys):
+@pytest.mark.parametrize("friction", [None, 10.0])
+def test_impratio_is_written_with_the_friction_that_it_belongs_to(friction):
     """Its root is at most 10 times the friction: beyond, the solver errs."""
-    assert run(["advise", "--dt", "0.002", "--engine", "mujoco", *asked]) == 0
-    text = capsys.readouterr().out
-    assert set(re.findall(r' friction="(\S+)', text)) == {f"{friction}"}
+    text = "".join(write(find_errors(["mujoco"], BLOCK, 0.002), BLOCK, friction))
+    assert set(re.findall(r' friction="(\S+)', text)) == {f"{friction or 0.8}"}
     ratios = map(float, re.findall(r'impratio="(.*?)"', text))
-    assert max(ratios) == pytest.approx((10.0 * friction) ** 2)
+    assert max(ratios) == pytest.approx((10.0 * (friction or 0.8)) ** 2)
 
 
 def test_a_dial_is_no_step(capsys):
     assert run(["advise", "--engine", "drake", "--error", "0.01"]) == 0
-    text = capsys.readouterr().out
     own = 1e-8 * BLOCK.alpha * max(1.0, BLOCK.R)
+    text = capsys.readouterr().out
     assert "accuracy = 1e-08" in text and f"integrator.set_target_accuracy({own!r})" in text
-    assert all(name in " ".join(text.split()) for name in (*TABLES, RANDOM))
+
+
+def singles(name, engine, column):
+    """Return what the defaults leave, and what each setting that breaks nothing does."""
+    table = read_table(PUBLISHED / name, "factor", "level")
+    mine = table[(table["preset"] == DEFAULT) & (table["engine"] == engine)]
+    base = mine[mine["factor"] == ""].iloc[0]
+    found = mine[(mine["factor"] != "") & (mine["factor"] != OWN_STEPS)]
+    sound = found[(found["failed"] == 0) & (found["wrong"] <= base["wrong"])]
+    if column == "max_error" and not base["failed"]:
+        sound = sound[sound["median_error"] < base["median_error"]]
+    left = {
+        f"{each.factor}: {each.level}": abs(getattr(each, column)) for each in sound.itertuples()
+    }
+    return math.inf if base["failed"] else base[column], left
+
+
+@pytest.mark.parametrize("symptom", seen.SYMPTOMS, ids=lambda symptom: symptom.column)
+def test_no_other_single_setting_helps_more(symptom, symptoms):
+    for row in symptoms[symptoms["symptom"] == symptom.name].to_dict("records"):
+        before, left = singles(seen.VARIANTS, row["engine"], symptom.column)
+        before_own, left_own = singles(seen.OWN, row["engine"], symptom.column)
+        assert (row["before"], row["before_own"]) == (before, before_own)
+        helping = {
+            name: size
+            for name, size in left.items()
+            if before and name in left_own and size <= 0.5 * abs(before)
+            if left_own[name] <= 0.5 * abs(before_own)
+        }
+        assert bool(row["setting"]) == bool(helping)
+        if helping:
+            assert abs(row["after"]) == helping[row["setting"]] == min(helping.values())
+            assert abs(row["after_own"]) == left_own[row["setting"]]
+
+
+def test_a_setting_is_quoted_in_the_library_s_words_for_a_step_and_a_friction():
+    text = "".join(seen.write(seen.find(["pybullet"]), BLOCK, None, None))
+    assert "damping: as in the best" in text and "linearDamping=0.0, angularDamping=0.0" in text
+    text = "".join(seen.write(seen.find(["mujoco"]), BLOCK, 0.004, 0.35))
+    assert f" {-0.9999 / 0.004!r}" in text and '"0.35 0.35' in text
 
 
 @pytest.mark.parametrize("mode", [[], ["--symptoms"]])
@@ -146,8 +214,7 @@ def test_a_folder_holds_what_is_printed_with_its_figure(mode, tmp_path, capsys):
         (["--error", "0"], "--error is '0'; it must be a positive finite number"),
         (["--error", "0.1", "0.1"], "--error names 0.1 twice"),
         (["--engine", "havok"], "--engines is 'havok'; it must be among"),
-        (["--published", "tests"], "--published is 'tests'; it must hold precision/work-precision"),
-        (["--symptoms", "--published", "tests"], "it must hold contact/variants.csv"),
+        (["--dt", "2"], "--dt is 2; it must be from"),
         (["--symptoms", "--error", "0.1"], "--error is 0.1; it may be given only without --sym"),
     ],
 )
