@@ -52,7 +52,7 @@ TEXTS = ("setting", "asked_in")
 
 
 def find(engines: Iterable[str]) -> pd.DataFrame:
-    """Return the columns of symptoms.csv: a line for each symptom and engine of published tables."""
+    """Return the columns of symptoms.csv: a line for each symptom and published engine."""
     table, own = (read_table(PUBLISHED / name, "factor", "level", "trap") for name in TABLES)
     rows = []
     asked = [name for name in engines if name in set(table["engine"])]
