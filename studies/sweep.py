@@ -40,6 +40,10 @@ class Options(EffortOptions):
     figure: Annotated[tuple[int, ...], some_figures(6, 7, 8, 9)] = (6, 7, 8, 9)
 
 
+MOST_DRAWN = 15
+"""Sources that a figure of all cases still shows apart."""
+
+
 def jobs(sources: Iterable[str], quick: bool, options: Options) -> list[Job]:
     """Return the jobs in the order of the table: case by case, source by source."""
     options.refuse_idle(sources := tuple(sources))
@@ -123,16 +127,17 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
 
 
 def figures(tables: Tables) -> Mapping[str, Figure]:
-    """Draw figures 6 to 9; engines with several presets as strips, and all in one figure."""
-    from studies.drawing.sweep import draw_by_preset, draw_overview, draw_sweep
+    """Draw figures 6 to 9 of a few sources; engines with several presets as an overview."""
+    from studies.drawing.sweep import draw_overview, draw_sweep
 
     compared = with_reference(tables["sweep"])
     lines = preset_table(over_all(tables["summary"]))
-    each = {str(n): rows for n, rows in compared.groupby("figure", sort=False)}
-    if lines.empty or lines["preset"].nunique() < 2:
-        return {f"figure-{n}": draw_sweep(rows) for n, rows in each.items()}
-    by_preset = {f"presets-{n}": draw_by_preset(rows) for n, rows in each.items()}
-    return {"overview": draw_overview(lines), **by_preset}
+    several = len(lines) and lines["preset"].nunique() > 1
+    drawn = {"overview": draw_overview(lines)} if several else {}
+    if compared["source"].nunique() > MOST_DRAWN:
+        return drawn
+    each = compared.groupby("figure", sort=False)
+    return drawn | {f"figure-{n}": draw_sweep(rows) for n, rows in each}
 
 
 PAPER_PAIR = ("housner", "modified")
@@ -311,8 +316,6 @@ Writes sweep.csv, summary.csv, findings.csv, findings.txt and a picture of each 
         "largest, how many outcomes are wrong, and the run time of a case.",
         "figure": "The largest rotation over the frequency of the pulse, who overturns (band), and "
         "below the error; a column for each H/B.",
-        "presets": "Error of the peak over the frequency as colour; in red wrong overturning "
-        "(square), missed rocking (dash), no result (cross).",
     },
 )
 command = STUDY.command()

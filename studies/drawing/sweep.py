@@ -1,31 +1,25 @@
-"""One of the paper's figures 6 to 9: peaks, who overturns, and errors; a column for each H/B."""
+"""The paper's figures 6 to 9, a column for each H/B; and errors and run times of all presets."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engines.declaration import AT_REST
-from studies.drawing.facets import STRIP, cells, dot, error_scale, key, preset_dots, rows, sheet
+from studies.drawing.facets import error_scale, key, preset_dots, rows, sheet
 from studies.drawing.labels import Name, beside
 from studies.drawing.styles import line_of, name_of, style_of, title_of
-from studies.kit.say import out_of, part
-from studies.measures.presets import in_order, is_engine, look_of, preset_of
-from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, WORDS, wrong_in
+from studies.kit.say import part
+from studies.measures.presets import in_order, look_of
+from studies.measures.wrongness import KINDS
 
 TOP, LINE = 1.2, 0.085
 """Upper end of the scale of abs(theta)/theta_cr, and the height of a line in the band above it."""
 FLOOR, CEILING = 1e-8, 1e1
 """Ends of the scale of errors."""
-LEAST = 1e-6
-"""Lower end of the colours of errors along the frequency."""
-MARKERS = {FALL: "s", REST: "_", NO_ANSWER: "x"}
-"""Kind of a wrong outcome -> its mark in a strip."""
 
 
 def draw_sweep(rows: pd.DataFrame) -> Figure:
@@ -144,64 +138,3 @@ def draw_overview(table: pd.DataFrame) -> Figure:
     drawing.suptitle(head, fontsize=12)
     key(drawing, preset_dots(presets), 5, fontsize=10, handletextpad=0.2, columnspacing=1.2)
     return drawing
-
-
-def draw_by_preset(rows: pd.DataFrame) -> Figure:
-    """Draw the errors of one of figures 6 to 9 along the frequency as colours.
-
-    A strip for each engine and preset, a column for each H/B; of widths that similarity makes alike
-    a cell holds the largest error, and every mark.
-    """
-    rows = rows[rows["source"].map(is_engine)]
-    rows = rows.assign(preset=rows["source"].map(preset_of), wrong=wrong_in(rows))
-    aspects, presets = sorted(rows["aspect"].unique()), in_order(rows["preset"])
-    groups = {preset: rows[rows["preset"] == preset] for preset in presets}
-    counts = [group["source"].nunique() for group in groups.values()]
-    size = (9.4, 1.7 + 0.2 * sum(counts) + 0.28 * len(counts))
-    drawing = Figure(figsize=size, layout="constrained")
-    grid = drawing.subplots(
-        len(presets), len(aspects), squeeze=False, sharex="col", height_ratios=counts
-    )
-    for line, (preset, group) in zip(grid, groups.items(), strict=True):
-        sources = list(group["source"].unique())
-        for axes, aspect in zip(line, aspects, strict=True):
-            shown = _strips(axes, group[group["aspect"] == aspect], sources)
-            axes.set_yticks([])
-        line[0].set_yticks(range(len(sources)), map(title_of, sources), fontsize=8.5)
-        wrong = out_of((group["wrong"] != "").sum(), len(group))
-        look = look_of(preset)
-        line[0].set_title(f"{look.short}: {wrong} outcomes wrong", loc="left",
-                          color=look.colour, fontsize=9.5, fontweight="bold")  # fmt: skip
-    for axes, aspect in zip(grid[-1], aspects, strict=True):
-        axes.set_xlabel(f"ω/p at H/B = {aspect:g}", fontsize=10)
-    bar = drawing.colorbar(shown, ax=grid, extend="both", aspect=40, pad=0.015)
-    error_scale(bar.ax.yaxis, LEAST, 1.0, 1)
-    bar.ax.set_title("error", fontsize=9)
-    median = {name: part(groups[name]["error"].abs().median()) for name in presets}
-    words = [f"{median[name]} {look_of(name).words}" for name in (presets[0], presets[-1])]
-    number = rows["figure"].iloc[0]
-    drawing.suptitle(
-        f"Figure {number}: half of the engines' errors are below\n{', '.join(words)}", fontsize=12
-    )
-    key(drawing, [dot(WORDS[kind], look, "#d00000", markersize=5) for kind, look in MARKERS.items()]
-        + [dot("both overturn, as they should", "s", STRIP, markersize=8)])  # fmt: skip
-    return drawing
-
-
-def _strips(axes: Axes, mine: pd.DataFrame, sources: list[str]) -> Any:
-    sizes = mine.assign(size=mine["error"].abs()).groupby(["source", "omega_over_p"])["size"].max()
-    frequencies = sorted(mine["omega_over_p"].unique())
-    table = sizes.unstack().reindex(index=sources, columns=frequencies)
-    axes.set_facecolor(STRIP)
-    shown = cells(axes, table.to_numpy(), LEAST)
-    for kind, look in MARKERS.items():
-        wrong = mine[mine["wrong"] == kind]
-        x = np.searchsorted(frequencies, wrong["omega_over_p"])
-        y = [sources.index(source) for source in wrong["source"]]
-        axes.plot(x, y, look, color="#d00000", markersize=2.8)
-    ticks = [k for k, value in enumerate(frequencies) if abs(value - round(value)) < 1e-9]
-    axes.set_xticks(ticks, [f"{frequencies[k]:g}" for k in ticks], fontsize=9)
-    axes.set_yticks(np.arange(0.5, len(sources) - 1), minor=True)
-    axes.grid(axis="y", which="minor", color="white", linewidth=1.2)
-    axes.tick_params(which="minor", length=0)
-    return shown

@@ -235,7 +235,7 @@ def test_what_is_written_is_read(samples, unit, columns, end, form, tmp_path_fac
         rows = [f"{at * 0.005:.4f}{mark}{word}" for at, word in enumerate(words)]
     path = tmp_path_factory.getbasetemp() / "form.txt"
     path.write_bytes("".join(f"{line}{end}" for line in (*said, *rows)).encode())
-    record = read_record(path)
+    record = Record.read(path)
     assert record.dt == pytest.approx(0.005, rel=1e-12)
     assert record.samples.tolist() == (UNITS[unit] * np.array(samples)).tolist()
 
