@@ -14,7 +14,7 @@ from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray
 from engines.scene import System, layout_of
-from studies.drawing.styles import full_name, style_of, title_of
+from studies.drawing.styles import full_name, style_of
 from studies.kit.say import power
 
 INK, SOFT, BLOCK, GROUND, GHOST = "#1b1b1b", "#666666", "#cfe0ee", "#d9d9d4", "#c9c9c9"
@@ -37,16 +37,6 @@ def outlines(system: System, at: float) -> FloatArray:
         turned = box @ np.array([[cosine, -sine], [sine, cosine]])
         corners.append(turned + np.array([body.at.x, body.at.z]))
     return np.array(corners)
-
-
-def _outline(block: RigidBlock, theta: float) -> FloatArray:
-    """Return the corners of a block turned by `theta` [rad], from the one it stands on."""
-    side = 1.0 if theta >= 0.0 else -1.0
-    width, height = side * block.width, block.height
-    corners = np.array([[0.0, 0.0], [-width, 0.0], [-width, height], [0.0, height]])
-    sine, cosine = math.sin(theta), math.cos(theta)
-    turned: FloatArray = corners @ np.array([[cosine, -sine], [sine, cosine]]) + [0.5 * width, 0.0]
-    return turned
 
 
 def draw_scene(system: System, at: float) -> Figure:
@@ -83,8 +73,8 @@ def draw_block() -> Figure:
     axes = drawing.subplots()
     axes.set(xlim=(-1.2, 1.75), ylim=(-0.5, 2.6))
     _set_the_stage(axes, 0.16)
-    pivot, foot, far, top = corners = _outline(block, theta)
-    axes.add_patch(Polygon(_outline(block, 1e-12), **DASHED))
+    foot, pivot, top, far = corners = outlines(block, theta)[0]
+    axes.add_patch(Polygon(outlines(block, 0.0)[0], **DASHED))
     axes.add_patch(Polygon(corners, **WHOLE))
     centre = 0.5 * (pivot + far)
     letters: dict[str, Any] = {"fontsize": 15, "va": "center"}
@@ -123,31 +113,38 @@ def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> 
     """
     drawing = Figure(figsize=(10.0, 6.0), layout="constrained")
     upper, lower = drawing.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.25))[:, 0]
-    found = {str(source): points for source, points in samples.groupby("source", sort=False)}
-    exact = found["exact"]
-    instant = float(exact["time_s"].to_numpy()[np.argmax(exact["theta_ratio"].abs())])
-    at = {
-        source: float(np.interp(instant, points["time_s"], points["theta_ratio"]))  # or the last
-        for source, points in found.items()
-    }
-    others = lines[lines["source"] != "exact"]
-    panels = upper.subplots(1, len(others), sharey=True)
-    for axes, line in zip(panels, others.to_dict("records"), strict=True):
-        source = line["source"]
+    wide = samples.pivot(index="time_s", columns="source", values="theta_ratio")
+    instant = wide.index[int(wide["exact"].abs().to_numpy().argmax())]
+    at: dict[str, float] = wide.ffill().loc[instant].to_dict()
+    others = lines[lines["source"] != "exact"].to_dict("records")
+    for axes, line in zip(upper.subplots(1, len(others), sharey=True), others, strict=True):
+        source, colour = line["source"], style_of(line["source"]).colour
         axes.set(xlim=(-1.15, 1.15), ylim=(-0.12, 1.75))
         _set_the_stage(axes, 0.1)
         looks: list[tuple[float, dict[str, Any]]] = [
             (at["exact"], {"facecolor": GHOST, "edgecolor": "#8a8a8a", "linewidth": 0.8}),
-            (at[source], {"fill": False, "edgecolor": style_of(source).colour, "linewidth": 2.2}),
+            (at[source], {"fill": False, "edgecolor": colour, "linewidth": 2.2}),
         ]
         for ratio, look in looks:
-            theta = min(max(MAGNIFIED * ratio * block.alpha, -0.5 * math.pi), 0.5 * math.pi)
-            axes.add_patch(Polygon(_outline(block, theta), **look))
+            theta = np.clip(MAGNIFIED * ratio * block.alpha, -0.5 * math.pi, 0.5 * math.pi)
+            axes.add_patch(Polygon(outlines(block, float(theta))[0], **look))
         title = "Housner's linearization" if source == "housner" else full_name(source)
         axes.set_title(title, fontsize=10, fontweight="bold")
         axes.text(0.5, -0.03, _verdict(line), transform=axes.transAxes, ha="center", va="top",
                   fontsize=11)  # fmt: skip
-    _histories(lower.subplots(), found, instant)
+    axes = lower.subplots()
+    for source in samples["source"].unique():
+        axes.plot(wide.index, wide[source], **_look(source))
+    top = max(1.15 * float(wide["exact"].abs().max()), 0.62)
+    axes.set(xlim=(0.0, wide.index.max()), ylim=(-top, top), xlabel="time  [s]",
+             ylabel="rotation  θ/θcr  [–]")  # fmt: skip
+    axes.axvline(instant, color=SOFT, linewidth=0.8, linestyle=(0, (2, 3)))
+    words = f" outlines above: rotations drawn {MAGNIFIED:g} times as large; exact in grey"
+    axes.text(instant, -0.95 * top, words, fontsize=8.5, color=SOFT)
+    axes.axhline(0.0, color=INK, linewidth=0.6)
+    axes.grid(alpha=0.2)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(loc="upper right", fontsize=9, frameon=False, ncols=3)
     return drawing
 
 
@@ -160,34 +157,15 @@ def _verdict(line: dict[Any, Any]) -> str:
     return f"peak {error:+.0%}".replace("-", "−").replace("%", " %")
 
 
-def _histories(axes: Axes, found: dict[str, pd.DataFrame], instant: float) -> None:
-    for source, points in found.items():
-        axes.plot(points["time_s"], points["theta_ratio"], **_look(source))
-    top = max(1.15 * float(found["exact"]["theta_ratio"].abs().max()), 0.62)
-    axes.set(xlim=(0.0, max(float(points["time_s"].max()) for points in found.values())),
-             ylim=(-top, top), xlabel="time  [s]", ylabel="rotation  θ/θcr  [–]")  # fmt: skip
-    axes.axvline(instant, color=SOFT, linewidth=0.8, linestyle=(0, (2, 3)))
-    words = f" outlines above: rotations drawn {MAGNIFIED:g} times as large; exact in grey"
-    axes.text(instant, -0.95 * top, words, fontsize=8.5, color=SOFT)
-    axes.axhline(0.0, color=INK, linewidth=0.6)
-    axes.grid(alpha=0.2)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(loc="upper right", fontsize=9, frameon=False, ncols=3)
-
-
 def _look(source: str) -> dict[str, Any]:
     """Return how a history is drawn: the exact one as a band on which landing steps lie."""
     style = style_of(source)
+    look = {"color": style.colour, "linewidth": 1.7, "label": full_name(source)}
     if source == "exact":
-        return {"color": GHOST, "linewidth": 7.0, "label": "exact", "zorder": 1}
-    if ":" in source:
-        label = f"{title_of(source)}, as documented"
-        return {"color": style.colour, "linewidth": 1.6, "label": label}
+        return look | {"color": GHOST, "linewidth": 7.0, "label": "exact", "zorder": 1}
     if not style.marker:
-        return {"color": style.colour, "linestyle": "--", "linewidth": 1.8, "label": "Housner"}
-    return {
-        **{"color": style.colour, "linestyle": "none", "marker": style.marker, "markersize": 5.0},
-        "markerfacecolor": "none",
-        "markevery": (0 if style.marker == "o" else 8, 16),
-        "label": f"{title_of(source)}, landing steps",
-    }
+        return look | {"linestyle": "--", "label": "Housner"}
+    if ":" in source:
+        return look
+    every = {"markevery": (0 if style.marker == "o" else 8, 16), "markerfacecolor": "none"}
+    return {**look, "linestyle": "none", "marker": style.marker, "markersize": 5.0, **every}
