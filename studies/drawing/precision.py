@@ -1,4 +1,4 @@
-"""Error against run time, a panel for each engine; and what each thing put back costs."""
+"""Error against run time, a panel for each engine; and of one engine beside the published."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from engines import ENGINES
 from studies.drawing.facets import error_scale, sheet, strip_beyond
 from studies.drawing.labels import Name, around, beside
-from studies.drawing.styles import LOWEST, Style, style_of, title_of
+from studies.drawing.styles import LOWEST, Style, title_of
 from studies.kit.say import duration, listed
-from studies.measures.costs import EXACT, costs_of, exact_cost, method_title
+from studies.measures.costs import EXACT, exact_cost, method_title
 from studies.measures.finer import joint
 from studies.measures.presets import look_of
 
@@ -121,31 +121,6 @@ def _panel(axes: Axes, mine: pd.DataFrame, others: pd.DataFrame) -> list[Name]:
         names.append(Name(words, best["wall_s"], best["error"], style.colour))
     axes.grid(alpha=0.2)
     return names
-
-
-def draw_scenes(scenes: pd.DataFrame) -> Figure:
-    """Draw what each thing put back into a scene costs and changes, a dot for each engine."""
-    names, engines = list(scenes["scene"].unique()), list(scenes["engine"].unique())
-    drawing, (costs, errors) = sheet((9.6, 1.6 + 0.4 * len(names)), 1, 2, sharey=True)
-    scenes = scenes.assign(cost=costs_of(scenes).where(scenes["error"].notna()))
-    for place, engine in enumerate(engines):
-        rows = scenes[scenes["engine"] == engine].set_index("scene").reindex(names)
-        levels = np.arange(len(names)) + 0.7 * ((place + 0.5) / len(engines) - 0.5)
-        factor, look = rows["cost"], style_of(engine).points(6.5)
-        costs.hlines(levels, 1.0, factor, color=look["color"], linewidth=1.2)
-        costs.plot(factor, levels, **look)
-        errors.plot(rows["error"].abs().clip(lower=LOWEST), levels, **look, label=title_of(engine))
-    costs.set_yticks(range(len(names)), names)
-    costs.invert_yaxis()
-    costs.set(xscale="log", xlabel="run time over the scene as it is  [–]")
-    costs.axvline(1.0, color="#555555", linewidth=0.8)
-    costs.set_xticks([0.5, 1, 2, 5, 10, 20], ["½", "1", "2", "5", "10", "20"])
-    costs.set_xticks([], minor=True)
-    errors.set(xscale="log", xlabel="relative error of the peak  [–]")
-    for axes in (costs, errors):
-        axes.grid(alpha=0.25)
-    drawing.legend(loc="outside lower center", ncols=min(len(engines), 5), frameon=False)
-    return drawing
 
 
 def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:

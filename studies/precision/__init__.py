@@ -145,7 +145,7 @@ COLUMNS = {
     SHARES: ["engine", "step_s", "engine_s"],
     SCENES: [
         *("engine", "scene", "outcome", "wall_s", "runs", "steps"),
-        *("step_s", "plain_s", "setup_s", "memory_kib", "error", "message"),
+        *("step_s", "plain_s", "setup_s", "error", "message"),
     ],
     REFERENCE: ["scene", "wall_s"],
 }
@@ -232,35 +232,6 @@ def over_targets(table: pd.DataFrame, column: str) -> pd.DataFrame:
     return shown.dropna(how="all").rename_axis("method").reset_index()
 
 
-def finest(table: pd.DataFrame) -> pd.DataFrame:
-    """Return each method at its smallest median error, with its order and how many cases failed."""
-    columns = ["method", "value", "median_error", "max_error", "impact_error", "energy_drift"]
-    columns += ["steps", "wall_s", "runs", "setup_s"]
-    return pd.DataFrame(
-        {
-            **group.sort_values("median_error").iloc[0][columns],
-            "order": observed_order(group),
-            "failed": group["failed"].sum(),
-        }
-        for _, group in table.groupby("method", sort=False)
-    )
-
-
-def observed_order(line: pd.DataFrame) -> float:
-    """Return the order of the median error in a method's step; nan if unclear.
-
-    A line through the logarithms, over the settings whose error is above three times the floor, and
-    that are coarser than the one that reaches it: beyond, rounding makes the error grow again.
-    """
-    error = line["median_error"].where((line["failed"] == 0) & np.isfinite(line["median_error"]))
-    floor = error.min()
-    reached = line["value"][error == floor].max()
-    used = error.between(3.0 * floor, 0.3, inclusive="neither") & (line["value"] > reached)
-    if known_methods()[line["method"].iloc[0]].setting != "step" or used.sum() < 3:
-        return math.nan
-    return float(np.polyfit(np.log(line["value"][used]), np.log(error[used]), 1)[0])
-
-
 def finding(tables: Tables) -> str:
     """Say with which engine the smallest error is cheapest, and how much the exact one costs."""
     table = tables["work-precision"]
@@ -298,7 +269,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
             typical, "value"
         ),
         f"Its run time over that of the {EXACT} at its tightest": costs,
-        "Typical cases at the setting with the smallest median error": finest(typical),
         f"Time of a step, and over the engine's own part of it. {STEPPED}": shares.assign(
             over_engine=shares["step_s"] / shares["engine_s"]
         ),
@@ -313,11 +283,10 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
 
 
 def figures(tables: Tables) -> Mapping[str, Figure]:
-    """Draw error against run time, and what each thing put back into a scene costs and changes."""
-    from studies.drawing.precision import draw_precision, draw_scenes
+    """Draw error against run time."""
+    from studies.drawing.precision import draw_precision
 
-    drawn = {"precision": draw_precision(tables["work-precision"])}
-    return drawn | ({"cost": draw_scenes(tables[SCENES])} if len(tables[SCENES]) else {})
+    return {"precision": draw_precision(tables["work-precision"])}
 
 
 STUDY = Study(
@@ -345,8 +314,6 @@ takes about 10 minutes.""",
         "precision": "Median error of the peak over run time, a panel for each engine and a line "
         "for each of its presets from coarse to fine, all other methods pale behind; in the strip "
         "above, settings with which a case fails or has a wrong outcome.",
-        "cost": "What each thing put back into a scene does to run time, on the left, and to the "
-        "error, on the right; an engine without such a thing has no mark there.",
     },
     running=Running(jobs=1),
 )

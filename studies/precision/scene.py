@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 import math
-import os
-import pickle
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from functools import partial
-from pathlib import Path
 from pkgutil import resolve_name
 from timeit import repeat
 from typing import Any
@@ -23,12 +18,10 @@ import pandas as pd
 from analytic import peak_ratios, simulate
 from analytic.response import Outcome, Response
 from engines.declaration import Engine
-from engines.run.run import build
 from studies.cases.paper import HISTORIES, SWEEPS, free_rocking_window, sweep_cases
 from studies.kit.jobs import Job, Row, ask, summary
 from studies.measures.costs import best_of, best_of_each
 from studies.measures.differences import posed_cases
-from studies.sources.registry import scene_of
 
 GRID = np.linspace(0.0, 1.0, 1001)
 """Of a recorded history, over its duration."""
@@ -153,35 +146,8 @@ def put_back(job: Job) -> Row:
         "step_s": found.wall_s / max(found.steps, 1),
         "plain_s": plain.wall_s,
         "setup_s": found.setup_s,
-        "memory_kib": math.nan if found.outcome is Outcome.FAILED else memory_of(posed),
         "error": found.peak_ratio / exact - 1.0,
     }
-
-
-def memory_of(job: Job) -> float:
-    """Return the memory [KiB] of a built scene, by a process whose memory nothing has used."""
-    code = "import pickle, sys; from studies.precision.scene import grown; "
-    code += "print(grown(pickle.load(sys.stdin.buffer)))"
-    env = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    line = [sys.executable, "-c", code]
-    done = subprocess.run(line, input=pickle.dumps(job), env=env, capture_output=True)
-    return float(done.stdout.split()[-1]) if done.returncode == 0 else math.nan
-
-
-def grown(job: Job) -> float:
-    """Return by how much memory [KiB] grows with a built scene; nan where no system tells."""
-    status, case = Path("/proc/self/statm"), job.case
-    if not status.exists():
-        return math.nan
-    observed = {"duration": case.duration, "times": case.times}
-    scene = scene_of(case.system, case.motion, job.asked.preset, **observed, **job.options)
-    worlds, pages = [build(job.asked.declared.use(scene))], []
-    for count in (0, 20):
-        worlds += [build(job.asked.declared.use(scene)) for _ in range(count)]
-        pages.append(int(status.read_text().split()[1]))
-    for world in worlds:
-        world.close()
-    return 4.0 * max(pages[1] - pages[0], 0) / 20
 
 
 def reference(job: Job) -> Row:

@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 from functools import cache
 
-import numpy as np
 import pandas as pd
 import pytest
 from declared import NUISANCE, equal_to
@@ -16,7 +15,7 @@ from engines.declaration import Stepping
 from studies import precision
 from studies.kit.run import run
 from studies.measures.costs import LEAST_RUNS, LEAST_S, best_of, cost_text, enough
-from studies.precision import SCENES, STUDY, choices, jobs, measure, observed_order
+from studies.precision import SCENES, STUDY, choices, jobs, measure
 from studies.precision.scene import CASE, OWN_STEP, clock
 
 MOST_S = 4.0 * LEAST_S
@@ -80,14 +79,6 @@ def test_the_cheapest_setting_holds_with_every_finer_one_and_is_compared_to_the_
     assert "10 µs" in precision.finding({"work-precision": table.head(2)})
 
 
-def test_the_order_is_that_of_the_steps_above_the_floor():
-    steps = np.array([0.1, 0.05, 0.02, 0.01, 2e-3, 1e-3, 1e-4])
-    errors = [*steps[:4] ** 2, 2e-8, 1e-8, 1.3e-7]  # rounding makes it grow again
-    rows = {"method": "RK4", "value": steps, "median_error": errors, "failed": 0}
-    assert observed_order(pd.DataFrame(rows)) == pytest.approx(2.0)
-    assert math.isnan(observed_order(pd.DataFrame(rows | {"method": "SciPy RK45"})))
-
-
 posed = cache(jobs)
 
 
@@ -108,7 +99,7 @@ def test_a_wrong_outcome_is_an_infinite_error_and_each_table_has_its_rows():
     assert found["Taylor series"].min() < 1e-9 < 1e-3 < found["Taylor series"].max()
     assert tables["precision"]["figure"].dtype == int
     (free,) = tables[SCENES].to_dict("records")
-    assert free["error"] == pytest.approx(0.0, abs=1e-4) and not free["memory_kib"] < 50.0
+    assert free["error"] == pytest.approx(0.0, abs=1e-4)
     (share,) = tables["shares"].to_dict("records")
     assert 0.0 < share["engine_s"] < 1.0 and share["step_s"] > 0.0
     assert {row["table"] for row in STUDY.needed(rows)} == {"precision"}
