@@ -55,18 +55,12 @@ def local(
     many = not at_once or len(jobs) > FEW
     if sys.stderr.isatty():
         Kernel.tell = say
-    if many:
-        compile_all()
-    loaded, apart = set[str](), []
-    for number, job in enumerate(jobs):
-        if job.needs_process:
-            apart.append(number)
-            continue
-        if many and job.source not in loaded:
-            loaded.add(job.source)
-            ask(job)  # to load what is compiled is no part of the first case's run time
+    apart = [number for number, job in enumerate(jobs) if job.needs_process]
+    for number in sorted({*range(len(jobs))}.difference(apart)):
+        if many:
+            _load(jobs[number])
         with deferring(*ENDING):  # one that comes while compiled code is called makes it crash
-            row = measure(job)
+            row = measure(jobs[number])
         yield number, row
     if not apart:
         return
@@ -85,12 +79,17 @@ _loaded = set[str]()
 """Sources whose kernels this process has loaded."""
 
 
+def _load(job: Job) -> None:
+    """Load what is compiled of a job's source: that is no part of the first case's run time."""
+    compile_all()
+    if job.asked.kind != "engine" and job.source not in _loaded:
+        _loaded.add(job.source)
+        ask(_short(job))
+
+
 def _measured(measure: Measure, job: Job, many: bool) -> Row:
     if many:
-        compile_all()
-        if job.asked.kind != "engine" and job.source not in _loaded:
-            _loaded.add(job.source)
-            ask(_short(job))
+        _load(job)
     row = measure(job)
     if str(row.get("message", "")).startswith(MemoryError.__name__):
         row["message"] += f"; a process may allocate {MEMORY_BYTES / 1e9:g} GB"

@@ -73,18 +73,9 @@ def _shortened(text: str, longest: int) -> str:
 
 
 def prepare_streams() -> None:
-    """Send what goes to a closed stream nowhere, and show what a terminal cannot as marks.
-
-    A descriptor that stays free would be taken by the next file that is opened, and whatever an
-    engine prints would go into it.
-    """
-    for number in range(3):
-        try:
-            os.fstat(number)
-        except OSError:
-            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
-    sys.stdout = sys.stdout or os.fdopen(1, "w", closefd=False)
-    sys.stderr = sys.stderr or os.fdopen(2, "w", closefd=False)
+    """Send what goes to a closed stream nowhere, and show what a terminal cannot as marks."""
+    sys.stdout = sys.stdout or Path(os.devnull).open("w")
+    sys.stderr = sys.stderr or Path(os.devnull).open("w")
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
