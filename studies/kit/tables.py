@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import hashlib
 import os
-import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -13,8 +12,6 @@ from pathlib import Path
 import pandas as pd
 
 PACKED = ".gz"
-FORMULA = re.compile(r"'*[=+\-@].+")
-"""Words in one line that a spreadsheet takes for a formula, or that were quoted once."""
 
 
 @contextmanager
@@ -43,30 +40,9 @@ def write_text(path: Path, text: str) -> None:
         part.write_bytes(text.encode())
 
 
-def quoted(word: object) -> object:
-    """Return a word with an apostrophe before it if a spreadsheet would take it for a formula."""
-    if not isinstance(word, str) or not FORMULA.fullmatch(word):
-        return word
-    with suppress(ValueError):
-        float(word)
-        return word
-    return f"'{word}"
-
-
-def unquoted(word: object) -> object:
-    """Return a word as it was before it was `quoted`."""
-    bare = word[1:] if isinstance(word, str) and word.startswith("'") else word
-    return bare if quoted(bare) == word else word
-
-
-def _words(table: pd.DataFrame) -> list[str]:
-    return [str(name) for name in table if not pd.api.types.is_numeric_dtype(table[name])]
-
-
 def write_table(path: Path, table: pd.DataFrame) -> None:
     """Write a table without its index as CSV, numbers to the bit and missing ones as nan."""
-    safe = table.assign(**{name: table[name].map(quoted) for name in _words(table)})
-    write_text(path, safe.to_csv(index=False, na_rep="nan"))
+    write_text(path, table.to_csv(index=False, na_rep="nan"))
 
 
 def with_head(table: pd.DataFrame, study: str, name: str) -> pd.DataFrame:
@@ -88,10 +64,9 @@ def read_table(path: Path, *words: str) -> pd.DataFrame:
     try:
         heads = [str(name) for name in pd.read_csv(path, nrows=0)]
         missing = {name: ["nan"] for name in heads if name not in words}
-        table = pd.read_csv(path, keep_default_na=False, na_values=missing, dtype=texts)
+        return pd.read_csv(path, keep_default_na=False, na_values=missing, dtype=texts)
     except pd.errors.EmptyDataError:
         return pd.DataFrame()
-    return table.assign(**{name: table[name].map(unquoted) for name in _words(table)})
 
 
 def table_in(folder: Path, name: str, *words: str) -> pd.DataFrame:

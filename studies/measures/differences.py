@@ -91,12 +91,6 @@ def posed_cases(cases: pd.DataFrame) -> Posed:
     )
 
 
-def exact_peaks(cases: pd.DataFrame) -> FloatArray:
-    """Return the exact peaks of the cases, each of which is solved once."""
-    posed, restitution, back = _different(cases)
-    return peak_ratios(*posed, restitution=restitution)[0][back]
-
-
 def _different(cases: pd.DataFrame) -> tuple[Posed, FloatArray | None, NDArray[np.intp]]:
     """Return what is posed without repeats, frames' restitution, and where each case is there."""
     columns = [*posed_cases(cases)]
@@ -173,10 +167,3 @@ def _line(group: pd.DataFrame) -> dict[str, Any]:
         "missed_overturnings": int(group["missed_overturning"].sum()),
         "wall_s": group["wall_s"].sum(),
     }
-
-
-def scientific(value: float) -> str:
-    """Return a number in two digits, "-" for nan."""
-    if math.isnan(value):
-        return "-"
-    return f"{value:.1e}" if value else "0"

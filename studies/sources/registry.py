@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import MODELS, integrate, simulate
-from analytic.motion import FloatArray, Motion
+from analytic.motion import Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines import ENGINES, core_engines, installed_engines
@@ -58,26 +58,17 @@ class Source:
     stepping: bool = False
     name: str = ""
 
-    def check(
-        self,
-        block: System,
-        motion: Motion,
-        *,
-        duration: float | None,
-        times: FloatArray | None,
-        **options: Any,
-    ) -> None:
+    def check(self, block: System, motion: Motion, **options: Any) -> None:
         """Refuse what it cannot be asked, before it is, by a TypeError or ValueError."""
         if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
         if getattr(self.call, "func", None) is run_engine:
-            asked = {**options, "duration": duration, "times": times}
-            self.declared.use(scene_of(block, motion, self.preset, **asked))
-        elif options:
-            taken = inspect.signature(self.call).parameters
-            if all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
-                for name in options:
-                    one_of("option", name, [name for name in taken if name not in NOT_OPTIONS])
+            self.declared.use(scene_of(block, motion, self.preset, **options))
+            return
+        taken = inspect.signature(self.call).parameters
+        if all(item.kind is not item.VAR_KEYWORD for item in taken.values()):
+            for name in options.keys() - {"duration", "times"}:
+                one_of("option", name, [name for name in taken if name not in NOT_OPTIONS])
 
     @property
     def declared(self) -> Engine:
@@ -101,12 +92,7 @@ class Source:
 
 
 def run_engine(
-    block: System,
-    motion: Motion,
-    *,
-    engine: str,
-    preset: str | None,
-    **options: Any,
+    block: System, motion: Motion, *, engine: str, preset: str | None, **options: Any
 ) -> Response:
     """Build the scene, as `scene_of` does, and let the engine run it.
 
@@ -174,9 +160,7 @@ def resolve(name: str) -> Source:
     plain, colon, preset = name.partition(":")
     source = SOURCES.get(plain)
     if source is None:
-        like = [known for known in SOURCES if perhaps(plain, [known])]
-        ends = [colon + preset if preset in presets_of(SOURCES[known]) else "" for known in like]
-        near = perhaps(name, [known + end for known, end in zip(like, ends, strict=True)])
+        near = perhaps(plain, list(SOURCES))
         raise UnknownSourceError(f"source is {name!r}{near}; it must be one of {allowed()}")
     if colon and preset not in presets_of(source):
         able = [f"{plain}:{own}" for own in presets_of(source)]

@@ -68,9 +68,9 @@ compare CASE --sources exact bullet | --sources | 'bullet' | modified
 compare CASE --sources mujoco:best | --sources | 'mujoco:best' | naive
 compare CASE --sources mujoco:fixd | 'mujoco:fixd', perhaps 'mujoco:fixed'; it must be one of mujoco
 compare CASE --sources mujuco | 'mujuco', perhaps 'mujoco'; it must be one of exact
-compare CASE --sources MuJoCo:fixed | 'MuJoCo:fixed', perhaps 'mujoco:fixed'
+compare CASE --sources MuJoCo:fixed | 'MuJoCo:fixed', perhaps 'mujoco'
 compare CASE --sources :fixed | source is ':fixed'; it must be one of exact
-compare CASE --sources hausner:fixed | source is 'hausner:fixed'; it must be one of exact
+compare CASE --sources hausner:fixed | source is 'hausner:fixed', perhaps 'housner'
 compare CASE --sources pybulet:fixd | perhaps 'pybullet'; it must
 compare CASE --sources box2d:error-controlled | must be one of box2d:naive, box2d:
 compare CASE --sources exact:fixed | 'exact:fixed'; it must be 'exact'
