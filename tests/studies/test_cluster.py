@@ -2,7 +2,6 @@
 
 import os
 import signal
-import sys
 import threading
 from contextlib import ExitStack
 
@@ -49,14 +48,6 @@ def test_rows_are_those_of_this_machine_to_the_bit(station):
     assert set(here["outcome"]) == {"rocked"}
 
 
-def test_a_study_runs_on_a_cluster(station, tmp_path):
-    from studies.__main__ import run
-
-    asked = ["sweep", "--figure", "6", "--sources", "exact", "--cluster", station]
-    assert run([*asked, "--out", str(tmp_path)]) == 0
-    assert len(pd.read_csv(tmp_path / "sweep.csv")) == 240
-
-
 def test_a_worker_of_other_code_is_refused(station, monkeypatch):
     made = cluster.makers_of
     monkeypatch.setattr(
@@ -68,21 +59,11 @@ def test_a_worker_of_other_code_is_refused(station, monkeypatch):
         list(on_cluster(station, 60.0, jobs_of("exact"), answer))
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nowhere", "::::", "tcp://"])
-def test_an_address_where_nobody_answers(address, tmp_path, capsys):
-    line = refused(capsys, ["sweep", "--cluster", address, "--out", tmp_path], "--cluster is ")
-    assert "running Dask scheduler" in line
-
-
-def test_jobs_are_not_counted_beside_a_cluster(tmp_path, capsys):
-    asked = ["sweep", "--cluster", "tcp://127.0.0.1:9", "--jobs", "2", "--out", tmp_path]
-    refused(capsys, asked, "--jobs is 2", "without --cluster")
-
-
-def test_missing_dask_is_a_line(monkeypatch):
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(BadInputError, match="distributed"):
-        list(on_cluster("tcp://127.0.0.1:1", 1.0, jobs_of("exact"), answer))
+def test_an_address_where_nobody_answers_is_refused_and_so_are_jobs_beside_it(tmp_path, capsys):
+    for address in ("tcp://127.0.0.1:9", "nowhere", "::::"):
+        asked = ["sweep", "--cluster", address, "--out", tmp_path]
+        refused(capsys, asked, f"--cluster is {address!r}", "running Dask scheduler")
+    refused(capsys, [*asked, "--jobs", "2"], "--jobs is 2", "without --cluster")
 
 
 @pytest.mark.slow

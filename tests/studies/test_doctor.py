@@ -11,7 +11,7 @@ from analytic.response import Response
 from studies import doctor
 from studies.__main__ import run
 from studies.kit.identity import version_of
-from studies.sources.registry import SOURCES, Source, resolve
+from studies.sources.registry import SOURCES, Source
 
 
 def diagnosed(capsys, monkeypatch, *here):
@@ -63,9 +63,3 @@ def test_an_engine_that_fails_or_is_wrong_is_a_line(strength, answer, capsys, mo
     assert code == 1
     assert line.startswith(f"FAIL  mujoco:landing (mujoco {version_of('mujoco')}): {answer}")
     assert "pip install --force-reinstall 'rocking'" in line
-
-
-def test_a_preset_is_held_to_what_it_should_keep():
-    names = ("mujoco", "rapier", "drake", "mujoco:fixed", "mujoco:naive")
-    kept = [doctor.should_keep(resolve(name)) for name in names]
-    assert kept == [1e-4, 6e-3, 2e-2, 2e-2, 0.3]

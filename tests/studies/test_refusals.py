@@ -10,123 +10,68 @@ from records import AT2
 REFUSED = """
 # numbers of each kind, and words of a few
 compare --width 0 --height 1.5 PULSE | --width is '0'; it must be a positive finite number
-compare --width 0.5 --height -1.5 PULSE | --height is '-1.5' | positive
 compare --width inf --height 1.5 PULSE | --width is 'inf' | finite
 compare --width 0.5 --height nan PULSE | --height is 'nan' | finite
-compare --width wide --height 1.5 PULSE | --width is 'wide' | number
 compare CASE --friction -1 | --friction is '-1'; it must be a finite number, 0 or more
-compare CASE --friction nan | --friction is 'nan' | 0 or more
 compare CASE --friction 1_0 | --friction is '1_0' | 0 or more
 compare CASE --tilt nan | --tilt is 'nan' | finite
 compare CASE --rate 1e-400 | --rate is '1e-400'; it must be a finite number, and no smaller than
-compare CASE --rate 1e-324 | --rate is '1e-324' | no smaller
-compare CASE --friction 1e-400 | --friction is '1e-400' | 0 or more, and no smaller than
 compare CASE --tilt 0,5 | --tilt is '0,5'; it must be a finite number, with a decimal point
-blocks list.csv --record X.AT2 --scale 1 0,5 --out DIR | --scale is '0,5' | decimal point
 blocks comma.csv --record X.AT2 --out DIR | width is '0,5'; it must be from | with a decimal point
-compare CASE --baseline 1e-400 | --baseline is '1e-400'; it must be among none, constant, linear
-compare CASE --rate fast | --rate is 'fast' | finite
-compare CASE --phase inf | --phase is 'inf' | finite
 compare CASE --jobs 0 | --jobs is '0' | positive whole number
 compare CASE --half-cycles 1.5 | --half-cycles is '1.5' | whole
-compare CASE --step -1 | --step is '-1' | positive
 compare CASE --dt 0 --sources rk4 | --dt is '0'; it must be a positive
-compare BLOCK --amplitude -inf --omega 6.2832 | --amplitude is '-inf' | positive
-compare BLOCK --amplitude 0.4 --omega fast | --omega is 'fast' | positive
 compare BLOCK --amplitude 1e308 --omega 6.2832 | --amplitude | inf | finite
 compare CASE --pulse quarter | --pulse is 'quarter' | half-sine
-compare CASE --pulse none | --pulse is 'none' | half-sine
 compare CASE --accuracy none | --accuracy is 'none' | tight
-compare CASE --accuracy NULL | --accuracy is 'NULL' | tight
-compare CASE --units null | --units is 'null' | gal
-compare CASE --baseline null | --baseline is 'null' | linear
 advise --engine mujoco --dt 1,5 | --dt is '1,5'; it must be a positive finite number
-advise --engine mujoco --friction inf | --friction is 'inf' | 0 or more
 advise --engine mujoco --dt | --dt
-advise --engine mujoco --friction | --friction
-advise --symptoms --engines mujoco --dt x | --dt is 'x'; it must be a positive finite number
-advise --symptoms --engines mujoco --friction -1 | --friction is '-1' | 0 or more
 advise --symptoms --engines mujoco --dt 0.1 0.2 | 0.2
-validate --halves --out DIR --sources mujoco:naive --dt -1 | --dt is '-1' | positive finite number
-validate --halves --out DIR --sources mujoco:naive --friction nan | --friction is 'nan' | 0 or more
-sweep --out DIR --accuracy None | --accuracy is 'None' | loose
 sweep --figure 6.5 --out DIR | --figure is '6.5' | 6, 7, 8, 9
 sweep --figure 6 6 --out DIR | --figure names 6 twice | once
-sweep --time-limit 0 --out DIR | --time-limit is '0' | positive
 histories --figure 3 --out DIR | --figure is '3' | 2, 4, 5
 sweep --time-limit 1e150 --out DIR | --time-limit is '1e150' | up to 1e9
-precision --out DIR --time-limit nan | --time-limit is 'nan' | positive
-histories --out DIR --jobs 1.5 | --jobs is '1.5' | whole
-blocks list.csv --record X.AT2 --scale 0 --out DIR | --scale is '0'; it must be a positive finite
-blocks list.csv --record X.AT2 --scale 1 x --out DIR | --scale is 'x'
 blocks list.csv --record X.AT2 --scale 2 2 --out DIR | --scale names 2.0 twice
 blocks list.csv --record X.AT2 --scale --out DIR | --scale
-blocks list.csv --record X.AT2 --baseline cubic --out DIR | --baseline is 'cubic'
 
 # who is asked
-compare CASE --sources exact bullet | --sources | 'bullet' | modified
 compare CASE --sources mujoco:best | --sources | 'mujoco:best' | naive
 compare CASE --sources mujoco:fixd | 'mujoco:fixd', perhaps 'mujoco:fixed'; it must be one of mujoco
 compare CASE --sources mujuco | 'mujuco', perhaps 'mujoco'; it must be one of exact
 compare CASE --sources MuJoCo:fixed | 'MuJoCo:fixed', perhaps 'mujoco'
-compare CASE --sources :fixed | source is ':fixed'; it must be one of exact
 compare CASE --sources hausner:fixed | source is 'hausner:fixed', perhaps 'housner'
-compare CASE --sources pybulet:fixd | perhaps 'pybullet'; it must
-compare CASE --sources box2d:error-controlled | must be one of box2d:naive, box2d:
 compare CASE --sources exact:fixed | 'exact:fixed'; it must be 'exact'
 compare CASE --sources exact --step 0.1 | --step is 0.1 | a solver or an engine
 compare CASE --sources mujoco:fixed --accuracy tight | --accuracy is tight | chooses its steps
-sweep --sources housner --accuracy tight --out DIR | --accuracy is tight | chooses its steps
-validate --sources exact --step 0.1 --out DIR | --step is 0.1 | a solver or an engine
 contact --out DIR --engines mujuco | --engines is 'mujuco', perhaps 'mujoco'
 export CASE --out DIR --engine mujuco:fixed | perhaps 'mujoco'
 score mujuco --out DIR | ENGINE is 'mujuco', perhaps 'mujoco'
 contact --out DIR --sources exact | --sources is no option of contact; it takes --out, --engines
-precision --out DIR --engines mujoco | --engines is no option of precision
 compare CASE --sources exact exact | --sources names 'exact' twice | once
 compare CASE --sources | --sources is empty | housner
-sweep --sources nobody --out DIR | --sources | 'nobody' | mujoco
-stability --out DIR --sources exact exact | --sources names 'exact' twice | once
-blocks list.csv --record X.AT2 --sources exat --out DIR | --sources: source is 'exat'
 compare CASE --hight 2 | --hight | --height
 weep | weep | sweep
 --version x | --version | alone
-compare --version x | --version | alone
-x --version | --version | alone
 
 # what happens to a block
 compare CASE --duration 0.5 | --duration is 0.5 | 0.999998 s
 compare CASE --rate 1e-300 | --rate is 1e-300; it must be 0, or of a size 1e-150 to
-compare BLOCK --tilt 1e-100 | --tilt is 1e-100; it must be 0, or of a size
 compare CASE --phase 1e17 | --phase is 1e+17; it must be from -1e+06 to 1e+06
-compare CASE --scene slide --friction 0.1 --phase 1e30 | --phase is 1e+30
-compare CASE --rate 1e308 | --rate is 1e+308 | 1e+150
 compare CASE --tilt -4.9 | --tilt is -4.9 | between -4.88
 compare CASE --tilt 90 --degrees | --tilt is 90 | between -90 and 90
-animate BLOCK --tilt 5 --out film.gif | --tilt | between
 compare BLOCK --tilt -1 | --tilt is -1 | balances
 compare BLOCK --tilt 1 --omega 3 | --amplitude missing | requires
 compare BLOCK --tilt 0 | --amplitude and --omega missing | --tilt
-compare BLOCK --omega 3 | --amplitude missing
-compare BLOCK --amplitude 0.4 | --omega missing
-export BLOCK --out DIR --engine mujoco | --amplitude and --omega missing
 compare --height 1.5 PULSE | --width missing | requires
-animate --out film.gif | --width
 compare BLOCK --record X.AT2 --omega 3 | --omega is 3.0; it may be given only without --record
-compare BLOCK --record X.AT2 --pulse half-sine | --pulse is half-sine | without --record
-compare BLOCK --record X.AT2 --half-cycles 2 | --half-cycles is 2 | without --record
 compare BLOCK --record X.AT2 --scale 2 --pga 1 | --scale is 2 and --pga is 1; give one or the other
 compare BLOCK --record X.AT2 --scale 1e308 | --record times --scale 1e+308 | finite
 compare BLOCK --record X.AT2 --pga 1e308 | --record scaled to --pga 1e+308 | finite
-compare BLOCK --record X.AT2 --scale -2 | --scale is '-2'; it must be a positive
 compare BLOCK --record X.AT2 --units ft | --units is 'ft'
 compare BLOCK --record X.AT2 --duration 0.01 | length of the motion, 0.03 s
 compare BLOCK --record /nowhere/at.all | it must be a file that can be read
-compare BLOCK --record X.AT2 --baseline spline | --baseline is 'spline'
 compare CASE --baseline none | only with --record
-compare CASE --pga 1 | --pga is 1.0; it may be given only with --record
 export CASE --out DIR --engine mujoco --record x | it may be given only without --record
-blocks list.csv --record none.AT2 --out DIR | --record is 'none.AT2'; it must be a file that can be
 blocks list.csv --record X.AT2 ./X.AT2 --out DIR | --record names 'X.AT2' twice
 blocks list.csv --record list.csv --out DIR | --record is 'list.csv'
 blocks list.csv --record X.AT2 --units m/s2 --out DIR | it states g; --units must not be m/s2
@@ -134,19 +79,13 @@ blocks list.csv --record still.csv --units g --out DIR | it is zero throughout, 
 blocks list.csv --out DIR | --record requires an argument
 
 # a reader's own friction and step
-compare CASE --dt 0.002 | --dt is 0.002; | pybullet takes steps that land on impacts: ask pybullet:n
-compare CASE --dt 0.002 --sources drake | drake takes the engine's own steps
+compare CASE --dt 0.002 | --dt is 0.002; | pybullet takes steps that land on impacts
 compare CASE --dt 0.002 --sources exact | --dt is 0.002; it must come with a solver
 compare CASE --friction 1 --sources rk4 | --friction is 1; it must come with an engine
 compare CASE --friction 99 --sources pybullet | friction is 99.0; it must be from 0 to
 compare CASE --dt 1e-12 --sources rk4 | --dt is 1e-12; it must be at least 3.6
 compare CASE --dt 0.01 --step 0.1 --sources rk4 | --dt is 0.01 and --step is 0.1; give one or the
-validate --halves --out DIR --dt 0.1 --step 0.1 --sources rk4 | --dt is 0.1 and --step
-export CASE --dt 0.1 --step 0.1 --engine mujoco:naive --out DIR | give one or the other
-validate --halves --out DIR --sources mujoco --dt 0.1 | mujoco takes steps that
-validate --halves --out DIR --sources pybullet --friction 99 | friction is 99.0
 advise --engine pybullet --friction 99 | friction is 99.0; it must be from 0
-advise --symptoms --engines pybullet --friction 99 | friction is 99.0; it must be
 advise --engine mujoco --dt 2 | --dt is 2; it must be from 1e-06 to 1 s
 advise --symptoms --engines mujoco --dt 1e-9 | --dt is 1e-09; it must be from 1e-06 to 1 s
 advise --engine mujoco --dt 0.002 --error 0.1 | --error is 0.1; it may be given only without
@@ -159,17 +98,11 @@ export CASE --out DIR --engine mujoco:landing | its preset must have equal steps
 export CASE --out DIR --engine mujoco:naive --preset fixed | only where --engine has none
 export CASE --out DIR --engine mujoco --scene frame --load 2 --columns 1 | columns is 1; it must be
 compare CASE --scene frame --load 2 --columns 100000 | columns is 100000; it must be a whole number
-export CASE --out DIR --engine mujoco --scene frame --load 0 | --load is '0'; it must be
 animate CASE --out film.gif --scene frame | --load missing
 export CASE --out DIR --engine mujoco --scene slide | --friction missing
 export CASE --out DIR --engine mujoco --scene slide --friction 0.4 | it must be below width/height
-export CASE --out DIR --engine mujoco --scene slide --friction 0.2 --tilt 0.5 | only where something
 animate CASE --out film.gif --scene slide --friction 0.2 --tilt 0.1 | only where something rocks
-animate CASE --out film.gif --scene frame --load 2 --dt 0.001 --sources mujoco | it must come with
 compare CASE --load 2 | --load is 2.0; it may be given only with --scene frame
-compare CASE --columns 2 | --columns is 2; it may be given only with --scene frame
-compare CASE --scene frame --load nan | --load is 'nan'; it must be a positive
-compare CASE --scene frame --load 1 --columns 2.5 | --columns is '2.5'; it must be
 compare CASE --scene slide --friction 0 | --friction is 0
 compare CASE --scene slide --friction 0.2 --plot x.png | only where something rocks
 compare CASE --scene slide --friction 0.2 --sources dop853 | 'dop853' cannot be asked so
@@ -177,33 +110,22 @@ compare CASE --scene bridge | --scene is 'bridge'; it must be among block, frame
 
 # where the results go
 compare CASE --plot a.txt | --plot is 'a.txt' | .png
-compare CASE --plot a.tif | --plot is 'a.tif' | .png
 compare CASE --plot /nowhere/a.png | --plot is '/nowhere/a.png' | written
 sweep --out /dev/null/results | --out is '/dev/null/results' | folder
-contact --out '' | --out is empty | given
 sweep --out ' ' | --out is empty | given
-report --out '	' | --out is empty | given
 report --out /dev/null | --out is '/dev/null' | folder
 animate CASE --out film.avi | --out | .gif
 animate CASE --out nowhere/film.gif | --out | folder
-animate CASE --out /dev/full/film.gif | --out | folder
 animate CASE --out /proc/film.gif | --out | written
 
 # more than a computer has
 compare CASE --half-cycles 1000000000 | --half-cycles is '1000000000' | memory
-compare CASE --half-cycles 1000001 | --half-cycles is '1000001' | up to 1000000
 compare CASE --duration 1e300 | --duration is 1e+300 | at most 3.278e+05 s
-compare CASE --duration 3.3e5 | --duration is 330000 | at most 3.278e+05 s
 compare CASE --step 1e-300 | --step is '1e-300' | at least 1e-07
 compare CASE --duration 3e4 --step 1e-6 | --step is 1e-06 | 1e+09 steps
 compare CASE --duration 3e4 --dt 1e-6 --sources rk4 | at least 3e-05 for a run of 3e+04 s
 compare BLOCK --amplitude 0.4 --omega 1e-140 | --width is 0.5 | 1/p
-compare --width 1e-99 --height 1e-99 PULSE | --width is 1e-99 | 1/p
-export CASE --engine mujoco --out DIR --step 1e-300 | --step is '1e-300' | at least 1e-07
 export BLOCK --engine mujoco --out DIR --amplitude 0.4 --omega 1e-9 | --width is 0.5 | at most
-animate BLOCK --amplitude 1 --omega 1e-9 --out a.gif | --width | 1/p
-validate --out DIR --step 9e-8 | --step is '9e-8' | at least 1e-07
-validate --halves --out DIR --step 1e-300 | --step is '1e-300' | at least 1e-07
 """
 """A command line, and parts of the line with which it is refused."""
 
