@@ -49,6 +49,9 @@ TOKEN = re.compile("\x02(\\d+)\x03")
 NOTHING: tuple[Any, ...] = ()
 """What a function answers that says nothing."""
 
+LAST = re.compile("^[A-Z].*(?=[A-Z][a-z])")
+"""All but the last word of the name of a class."""
+
 NUMBERED = re.compile(r"_\d+\b")
 WIDTH = 99
 
@@ -74,10 +77,12 @@ class Notes:
     ----------
     without : sequence of str, optional
         Arguments by keyword that are not written down.
+    chained : bool, optional
+        Whether a call whose object is used once, in the next call, stands before that.
     """
 
-    def __init__(self, without: Sequence[str] = ()) -> None:
-        self._without = without
+    def __init__(self, without: Sequence[str] = (), *, chained: bool = False) -> None:
+        self._without, self._chained = without, chained
         self._lines: list[tuple[str, Sequence[int]]] = []
         self._made: list[_Made] = []
         self._known: dict[int, Noted] = {}
@@ -166,7 +171,8 @@ class Notes:
             for found in TOKEN.finditer(text):
                 made = self._made[int(found[1])]
                 made.uses.append(len(self._lines))
-                made.argument = made.argument and argument and text == found[0]
+                alone = argument and (self._chained or text == found[0])
+                made.argument = made.argument and alone
             return text
         if isinstance(value, dict):
             pairs = (f"{self.said(key)}: {self.said(it)}" for key, it in value.items())
@@ -184,14 +190,15 @@ class Notes:
     def called(self, function: "Noted", given: Sequence[Any], named: Mapping[str, Any]) -> Any:
         """Call a function, note it, and return what it returns, noted."""
         it = bare(function)(*map(bare, given), **{key: bare(one) for key, one in named.items()})
-        kind = str(function.noted_name).rpartition(".")[2].lower()
-        if isinstance(it, np.ndarray) or (isinstance(it, PLAIN[:-1]) and not MAKING.match(kind)):
+        name = str(function.noted_name).rpartition(".")[2]
+        kind = LAST.sub("", name).lower()  # sphere of CollisionShapeSphere
+        if isinstance(it, np.ndarray) or (isinstance(it, PLAIN[:-1]) and not MAKING.match(name)):
             return it
         shown = [
             f"{key}={self.said(one)}" for key, one in named.items() if key not in self._without
         ]
         arguments = ", ".join([*map(self.said, given), *shown])
-        call = f"{self.said(function, argument=False)}({arguments})"
+        call = f"{self.said(function, argument=self._chained)}({arguments})"
         if it is None or it is NOTHING or id(it) in self._known:
             self.write(call)
             return self._known.get(id(it))
@@ -201,13 +208,18 @@ class Notes:
         self.write(call, range(first, len(self._made)))
         return type(it)(made) if several else made[0]
 
-    def _object(self, it: Any, function: str) -> Any:
+    def _object(self, it: Any, function: str, line: int | None = None) -> Any:
         name = f"\x02{len(self._made)}\x03"
-        self._made.append(_Made(function, len(self._lines)))
+        self._made.append(_Made(function, len(self._lines) if line is None else line))
         if isinstance(it, PLAIN):
             return constant(it, name)
         self._known[id(it)] = noted = Noted(self, it, name)
         return noted
+
+    def got(self, it: Any, text: str) -> Any:
+        """Note how an object was got, and return it noted."""
+        self.write(text, [len(self._made)])
+        return self._object(it, "body", len(self._lines) - 1)
 
     def found(self, it: Any, name: str) -> Any:
         """Return a part of something noted: a plain value as it is, or named where it is fixed."""
@@ -239,7 +251,9 @@ class Noted:
 
     def __getitem__(self, key: Any) -> Any:
         notes = self.noted_notes
-        return notes.found(self.noted_it[key], f"{self.noted_name}[{notes.said(key)}]")
+        found, text = self.noted_it[bare(key)], f"{self.noted_name}[{notes.said(key)}]"
+        # what a call returned leads to an object like one that a call made
+        return notes.got(found, text) if isinstance(key, Noted) else notes.found(found, text)
 
     def __setitem__(self, key: Any, value: Any) -> None:
         notes = self.noted_notes

@@ -1,0 +1,514 @@
+"""PhysX, by SAPIEN and on the CPU: settings, presets, and how a scene is built, stepped, read back.
+
+The library computes in single precision. Its solver TGS moves a body in every iteration, in the
+world: of v dt/iterations nothing is left below half of what its place is told apart by, so that a
+body slower than (ulp/2) iterations/dt stands still, the more so the shorter the step and the
+farther from the origin it is.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from engines.declaration import (
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    OWN_STEP,
+    OWN_STEPS,
+    UNMOVED_BASE,
+    Citation,
+    Engine,
+    Factor,
+    Help,
+    Precision,
+    Preset,
+    Rule,
+    Stepping,
+    factor,
+    level,
+    moving_base,
+)
+from engines.parts import (
+    NO_JAM,
+    Counted,
+    counted,
+    floor_half_size,
+    half_size,
+    imported,
+    touching_spheres,
+)
+from engines.parts.reflection import returned
+from engines.run.export import Notes, Script, scaled
+from engines.scene import Scene
+from engines.settings import check, disagreement, given, setting
+from engines.world import FloatArray, Moment, Pose, Step
+
+MOST = 255
+"""Iterations at most: the library counts them in eight bits."""
+
+
+CORNER, BASE_DEPTH = 1e-3, 1e-2
+"""Radius of corner balls and half the depth of the base over the height of the block: contacts are
+looked for from the middle of the base, the deeper that is, the more coarsely."""
+
+NOTHING = 1e-9
+"""A pull within this part of the weight is the weight: the rounding of a difference wakes a block.
+"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PhysxSettings(Counted):
+    """Settings of PhysX, by default those of SAPIEN; None leaves a setting to it.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", or "corners": small balls where the corners at the base are.
+    planar : bool
+        Lock what leads out of the plane, and put two corners into the middle plane instead of four
+        at the edges. A box has its four corners either way.
+    friction : float
+        Coefficient between block and base, at rest and sliding; SAPIEN's own is 0.3, with which a
+        block of H/B = 3 slides before it rocks.
+    tgs : bool or None
+        Whether the solver is TGS, which moves bodies in every iteration, or PGS; its own is TGS.
+    iterations, velocity_iterations : int or None
+        Of the solver, with and then without the correction of depths; its own are 10 and 1.
+    bounce_threshold : float or None
+        Velocity [m/s] below which no impact bounces; its own is 2.
+    depenetration : float or None
+        Fastest correction of a depth [m/s]; its own has no limit. A rounding of the depth over a
+        short step is a velocity, too.
+    angular_damping : float or None
+        Part of the angular velocity that is lost in a second; its own is 0.05.
+    sleeping : bool or None
+        Whether a block that has hardly moved for 0.4 s is no longer simulated; its own is on.
+    contact_offset : float or None
+        Gap [units of length] below which a contact holds, half of it on each side; its own is 0.01.
+        A block that is held before it strikes does so in two steps.
+    units : float or None
+        Units of length in the height of the block; None counts in metres.
+    centred : bool
+        Count heights from where the block's centre is at rest, not from the base.
+    reflection : bool
+        Give the sliding velocity of the corner about which the block turns back to it, by the
+        velocity of the base; not in the steps of an impact.
+    floor : str
+        How a base that moves is moved: by a "target" for the end of the step; as a "belt" whose
+        targets are where it is, set back before by what it goes in a step, since of a far place
+        less is told apart; or by "position" alone.
+    restitution : float
+        Coefficient of both; SAPIEN's own is 0.1.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    planar: bool = False
+    friction: float = setting(1.0, least=0.0)
+    tgs: bool | None = None
+    iterations: int | None = setting(least=1, most=MOST)
+    velocity_iterations: int | None = setting(least=0, most=MOST)
+    bounce_threshold: float | None = setting(above=0.0)
+    depenetration: float | None = setting(above=0.0)
+    angular_damping: float | None = setting(least=0.0)
+    sleeping: bool | None = None
+    contact_offset: float | None = setting(above=0.0)
+    units: float | None = setting(above=0.0)
+    centred: bool = False
+    reflection: bool = False
+    floor: str = setting("target", names=("target", "belt", "position"))
+    restitution: float = setting(0.1, least=0.0, most=1.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+class PhysxWorld:
+    """Bodies on a kinematic box, whether that moves or not."""
+
+    moment = Moment.MIDDLE
+
+    def __init__(
+        self, scene: Scene, settings: PhysxSettings, dt_s: float, library: Any = None
+    ) -> None:
+        self._sapien: Any = imported("sapien") if library is None else library
+        self._s, self._unit, self._sunk = settings, settings.unit_of(scene), settings.sunk_of(scene)
+        self._way = settings.floor if scene.frame == "world" else ""
+        self._reflects, self._weight = settings.reflection, scene.system.gravity
+        self._dt = self._speed = self._place = self.lag_m = 0.0
+        self._half = counted(half_size(scene.bodies[0]), self._unit)
+        self._state = np.zeros((len(scene.bodies), len(Pose._fields)))
+        wanted = self._set_library()
+        self.system = self._sapien.physx.PhysxCpuSystem()
+        self.stage = self._sapien.Scene([self.system])
+        friction = float(settings.friction)
+        self.material = self._sapien.physx.PhysxMaterial(friction, friction, settings.restitution)
+        self.base = self._new_base(scene)
+        self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
+        self._fault = self._read_back(scene, *wanted) if library is None else ""
+
+    def _set_library(self) -> tuple[dict[str, Any], ...]:
+        """Set what the library has once for a process; return its settings of scene, body, shape.
+
+        Its functions are told all settings together: what is not given is the default again.
+        """
+        s, unit, physx = self._s, self._unit, self._sapien.physx
+        bounce = None if s.bounce_threshold is None else s.bounce_threshold * unit
+        sleep = None if s.sleeping in (None, True) else 0.0
+        scene = given({"bounce_threshold": bounce, "enable_tgs": s.tgs})
+        body = given(
+            {
+                "solver_position_iterations": s.iterations,
+                "solver_velocity_iterations": s.velocity_iterations,
+                "sleep_threshold": sleep,
+            }
+        )
+        shape = given({"contact_offset": s.contact_offset})
+        physx.set_scene_config(gravity=(0.0, 0.0, -self._weight * unit), **scene)
+        physx.set_body_config(**body)
+        physx.set_shape_config(**shape)
+        return scene, body, shape
+
+    def _new_base(self, scene: Scene) -> Any:
+        x, y, z = floor_half_size(scene)
+        half = counted((x, y, BASE_DEPTH * z), self._unit)
+        floor = self._sapien.physx.PhysxCollisionShapeBox(half, self.material)
+        floor.local_pose = self._sapien.Pose((0.0, 0.0, -half[2]))
+        base = self._sapien.physx.PhysxRigidDynamicComponent()
+        base.attach(floor)
+        base.kinematic = True
+        self._place_at(base, (0.0, 0.0, -self._sunk))
+        return base
+
+    def _new_body(self, scene: Scene, number: int) -> Any:
+        s, unit, body, physx = self._s, self._unit, scene.bodies[number], self._sapien.physx
+        at, made = body.at, physx.PhysxRigidDynamicComponent()
+        half = counted(half_size(body), unit)
+        if s.geometry == "box":
+            box = physx.PhysxCollisionShapeBox(half, self.material)
+            box.density = body.density / unit**3
+            made.attach(box)
+        else:
+            radius = CORNER * scene.bodies[0].height
+            for corner in touching_spheres(scene, number, radius, planar=s.planar):
+                ball = physx.PhysxCollisionShapeSphere(radius * unit, self.material)
+                ball.local_pose = self._sapien.Pose(counted(corner, unit))
+                made.attach(ball)
+            if scene.layout.rests(number):
+                made.attach(physx.PhysxCollisionShapeBox(half, self.material))
+            made.mass = body.mass
+            made.inertia = tuple(moment * unit**2 for moment in body.inertia)
+            made.cmass_local_pose = self._sapien.Pose()
+        if s.angular_damping is not None:
+            made.angular_damping = s.angular_damping
+        if s.depenetration is not None:
+            made.max_depenetration_velocity = s.depenetration * unit
+        if s.planar:
+            made.set_locked_motion_axes([False, True, False, True, False, True])
+        turn = (math.cos(0.5 * at.theta), 0.0, math.sin(0.5 * at.theta), 0.0)
+        self._place_at(made, (at.x * unit, 0.0, at.z * unit - self._sunk), turn)
+        if not at.at_rest:
+            made.linear_velocity = (at.velocity_x * unit, 0.0, at.velocity_z * unit)
+            made.angular_velocity = (0.0, at.rate, 0.0)
+        return made
+
+    def _place_at(self, component: Any, *pose: Any) -> None:
+        entity = self._sapien.Entity()
+        entity.add_component(component)
+        entity.pose = self._sapien.Pose(*pose)
+        self.stage.add_entity(entity)
+
+    def step(self, step: Step) -> None:
+        """Advance by a step; see `engines.world.SteppedWorld`."""
+        if self._way or self._reflects:
+            self._lead(step)
+        if step.dt_s != self._dt:
+            self.system.timestep = self._dt = step.dt_s
+        x, z = step.pull_x, step.pull_z + self._weight
+        if abs(x) + abs(z) > NOTHING * self._weight:
+            pull = (x * self._unit, 0.0, z * self._unit)
+            for body in self.bodies:
+                body.add_force_torque(pull, (0.0, 0.0, 0.0), "acceleration")
+        self.system.step()
+        if self._way == "belt":
+            self._place = step.base_x * self._unit
+        elif self._way:
+            self._place = float(self.base.entity_pose.p[0])
+            self.lag_m = max(self.lag_m, abs(self._place / self._unit - step.base_x))
+
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        for number, body in enumerate(self.bodies):
+            pose = body.entity_pose
+            (x, _, z), turn = pose.p.tolist(), pose.q.tolist()
+            x, z = (x - self._place) / self._unit, (z + self._sunk) / self._unit
+            rate = float(body.angular_velocity[1])
+            self._state[number] = x, z, 2.0 * math.atan2(turn[2], turn[0]), rate
+        return self._state
+
+    def fault(self) -> str:
+        """Say which setting was not taken."""
+        step = {"timestep": (self._dt or None, self.system.timestep)}
+        return self._fault or disagreement(step, Precision.SINGLE.value)
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+        self.stage.clear()
+
+    def _lead(self, step: Step) -> None:
+        """Let the library lead the base to its place, from where its velocity is as wanted."""
+        place = step.base_x * self._unit if self._way else 0.0
+        if self._way == "position":
+            self.base.entity.pose = self._at(place)
+            return
+        belt = self._way == "belt"
+        if belt or self._reflects:
+            back = returned(step, self._dt) if self._reflects else 0.0
+            slip = self._slip(step.side) if back else 0.0
+            pace = step.base_velocity * self._unit if belt else (place - self._place) / step.dt_s
+            place = 0.0 if belt else place
+            self._speed = pace - back * slip
+            self.base.entity.pose = self._at(place - self._speed * step.dt_s)
+        self.base.set_kinematic_target(self._at(place))
+
+    def _at(self, x: float) -> Any:
+        return self._sapien.Pose((x, 0.0, -self._sunk))
+
+    def _slip(self, side: float) -> float:
+        """Return the velocity [units/s] at which the corner at a side slides on the base."""
+        _, _, theta, rate = self.state()[0]
+        level = side * self._half[0] * math.sin(theta) + self._half[2] * math.cos(theta)
+        return float(self.bodies[0].linear_velocity[0]) - rate * level - self._speed
+
+    def _read_back(self, scene: Scene, *wanted: dict[str, Any]) -> str:
+        s, block = self._s, self.bodies[0]
+        shape = block.collision_shapes[0]
+        pairs: dict[str, Any] = {
+            name: (value, getattr(place, name))
+            for place, settings in zip((self.system.config, block, shape), wanted, strict=True)
+            for name, value in settings.items()
+        }
+        for number, (body, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
+            pairs[f"mass {number}"] = (body.mass, found.mass)
+            moment = body.inertia[1] * self._unit**2
+            pairs[f"moment {number}"] = (moment, float(found.inertia[1]))
+        material = shape.physical_material
+        pairs |= {
+            "static friction": (s.friction, material.static_friction),
+            "dynamic friction": (s.friction, material.dynamic_friction),
+            "restitution": (s.restitution, material.restitution),
+            "angular damping": (s.angular_damping, block.angular_damping),
+            "locks": (s.planar, any(block.locked_motion_axes)),
+        }
+        return disagreement(pairs, Precision.SINGLE.value)
+
+
+def script(scene: Scene, settings: PhysxSettings, dt_s: float) -> Script:
+    """Return a scene as calls of SAPIEN; see `engines.run.export`."""
+    notes, unit, weight = Notes(), settings.unit_of(scene), scene.system.gravity
+    world = PhysxWorld(scene, settings, dt_s, notes.of(imported("sapien"), "sapien"))
+    notes.name(system=world.system, stage=world.stage, material=world.material, floor=world.base)
+    notes.name_bodies(world.bodies)
+    floor = settings.floor if scene.frame == "world" else ""
+    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+    far = "0.0, floor.entity_pose.p[2]]))"
+    moves = {
+        "": [],
+        "belt": [
+            f"floor.entity.pose = sapien.Pose([-DT * {velocity}, {far[:-1]}",
+            f"floor.set_kinematic_target(sapien.Pose([0.0, {far}",
+        ],
+        "target": [f"floor.set_kinematic_target(sapien.Pose([{x}, {far}"],
+        "position": [f"floor.entity.pose = sapien.Pose([{x}, {far[:-1]}"],
+    }
+    under = {"": "", "belt": f" - {x}"}.get(floor, " - float(floor.entity_pose.p[0])")
+    pull = ", 0.0, ".join(scaled(axis, unit) for axis in ("pull_x", f"(pull_z + {weight!r})"))
+    words = ("_config(", "Material(", "damping", "depenetration", "locked_motion")
+    return Script(
+        imports=("import sapien",),
+        settings=notes.quoted(*words),
+        build=(*notes.lines(), "system.timestep = DT"),
+        step=(
+            f"pull = {pull}",
+            f"if abs(pull_x) + abs(pull_z + {weight!r}) > {NOTHING * weight!r}:",
+            "    for body in bodies:",
+            "        body.add_force_torque(pull, (0.0, 0.0, 0.0), 'acceleration')",
+            *moves[floor],
+            "system.step()",
+        ),
+        pose=(
+            "turn = bodies[number].entity_pose.q",
+            "theta = 2.0 * math.atan2(turn[2], turn[0])",
+            "rate = float(bodies[number].angular_velocity[1])",
+        ),
+        place=f"(float(bodies[0].entity_pose.p[0]){under}) / {unit!r}",
+    )
+
+
+TUNED = PhysxSettings(
+    geometry="corners",
+    planar=True,
+    friction=NO_JAM,
+    tgs=False,
+    iterations=100,
+    velocity_iterations=100,
+    depenetration=1e-6,
+    angular_damping=0.0,
+    sleeping=False,
+    contact_offset=1e-6,
+    units=1.0,
+    centred=True,
+    restitution=0.0,
+)
+
+LANDING = replace(
+    TUNED,
+    iterations=MOST,
+    velocity_iterations=MOST,
+    contact_offset=None,
+    reflection=True,
+    floor="belt",
+)
+
+SHAPES = "SAPIEN 3.0.3, sapien/pysapien/physx.pyi"
+TUNING = "Isaac Lab 3.0.0, concepts/solver-tuning/tune_physx.rst"
+
+DOCUMENTED = (
+    Citation("step", "1/100 s", "SAPIEN 3.0.3, sapien/example/hello_world.py"),
+    Citation(
+        "iterations", "10 of position, 1 of velocity, by default", f"{SHAPES}: set_body_config"
+    ),
+    Citation(
+        "solver",
+        "enable_tgs = True, the default",
+        f"{SHAPES}: set_scene_config",
+    ),
+    Citation("bounce_threshold", "2.0, the default", f"{SHAPES}: set_scene_config"),
+    Citation("sleeping", "sleep_threshold = 0.005, the default", f"{SHAPES}: set_body_config"),
+    Citation("contact_offset", "0.01, the default", f"{SHAPES}: set_shape_config"),
+    Citation("contact_offset", "rest_offset 0, the default", f"{SHAPES}: set_shape_config"),
+    Citation("manifolds", "enable_pcm = True, the default", f"{SHAPES}: set_scene_config"),
+    Citation("damping", "angular 0.05, linear 0", f"{SHAPES}: PhysxRigidDynamicComponent"),
+    Citation("restitution", "0.1, the default", "physx.get_default_material()"),
+    Citation("friction", "0.3, of a pair the mean; here 1", "physx.get_default_material()"),
+    Citation(
+        "without effect",
+        "enable_friction_every_iteration, no enable_ccd, max_angular_velocity 100, "
+        "max_depenetration_velocity 1e32",
+        f"{SHAPES}: PhysxSceneConfig, PhysxRigidDynamicComponent",
+    ),
+    Citation("floor", "kinematic, set_kinematic_target", f"{SHAPES}: PhysxRigidDynamicComponent"),
+)
+"""What its documentation sets."""
+
+RECOMMENDED = (
+    Citation("step", "dt = 1/120 s, where to start: 'not a universal recommendation'", TUNING),
+    Citation("iterations", "at most 64 of position and 4 of velocity: all of them here", TUNING),
+    Citation("solver", "TGS, the first candidate", TUNING),
+    Citation("bounce_threshold", "0.2 m/s", TUNING),
+)
+"""What those who maintain PhysX recommend for contact."""
+
+STUCK = "of a slow move nothing is left in single precision: TGS adds it to the place in parts"
+SMOOTH = "SAPIEN's own friction: the block slides before it rocks"
+
+FACTORS = (
+    factor("tgs", level("TGS", trap=STUCK, tgs=True), level("PGS", (DEFAULT,), tgs=False)),
+    Factor(
+        "iterations",
+        ("iterations", "velocity_iterations"),
+        (level("255, 255", iterations=MOST, velocity_iterations=MOST),),
+    ),
+    factor("depenetration"),
+    factor("contact_offset"),
+    factor("angular_damping"),
+    factor("bounce_threshold", level("0.01 m/s", BOTH, bounce_threshold=0.01)),
+    factor("restitution"),
+    Factor(
+        "geometry",
+        ("geometry", "planar"),
+        (
+            level("4 corners, free", planar=False),
+            level("planar box", geometry="box"),
+            level("4 corners", (DEFAULT,), geometry="corners"),
+        ),
+    ),
+    factor("units", level("metres", units=None)),
+    factor("centred", name="origin"),
+    factor("sleeping", level("on", sleeping=True), by_default=False),
+    factor("friction", level("0.3, SAPIEN's own", (DEFAULT,), SMOOTH, friction=0.3)),
+    moving_base("target", "belt", "position"),
+)
+"""What its contact can be set to."""
+
+RULES = (
+    Rule("Take shorter steps than 1/100 s", *(DEFAULT, OWN_STEPS, OWN_STEP)),
+    Rule(
+        "Give a block small balls for corners, not a box",
+        *(BEST, "geometry", BY_DEFAULT),
+    ),
+    Rule(
+        "Shrink `contact_offset`: a corner that is held before it strikes does so in two steps",
+        *(BEST, "contact offset", BY_DEFAULT),
+    ),
+    Rule(
+        "Switch TGS off, `enable_tgs=False`, in short steps: below (ulp/2) iterations/dt, ulp that "
+        "of the place in the world, a body stands still",
+        *(BEST, "tgs", "TGS"),
+    ),
+    Rule(
+        "Move a base by `set_kinematic_target`: friction does not feel one whose pose is set",
+        *UNMOVED_BASE,
+    ),
+)
+"""What its users should know first."""
+
+NAIVE = Preset(
+    name="naive",
+    settings=PhysxSettings(),
+    step_s=0.01,
+    documented=DOCUMENTED,
+    frame="world",
+    own={"friction": 0.3},
+)
+
+ENGINE = Engine(
+    name="physx",
+    title="PhysX",
+    library="sapien",
+    packages=("sapien",),
+    install="rocking[physx]",
+    build=PhysxWorld,
+    stacks=True,
+    presets=(
+        NAIVE,
+        NAIVE.at_rest(),
+        NAIVE.recommended(
+            *RECOMMENDED,
+            step_s=1.0 / 120.0,
+            tgs=True,
+            iterations=64,
+            velocity_iterations=4,
+            bounce_threshold=0.2,
+        ),
+        Preset(name="fixed", settings=TUNED, step=1e-3),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            stacked=None,
+            helped_by={
+                Help.STEPS: None,
+                Help.REFLECTION: {"reflection": False},
+            },
+        ),
+    ),
+    precision=Precision.SINGLE,
+    shortest_step=3e-6,
+    script=script,
+    factors=FACTORS,
+    rules=RULES,
+)

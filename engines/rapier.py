@@ -1,0 +1,566 @@
+"""Rapier: how a scene is built, set, stepped and read back.
+
+The library computes in single precision: where a block stands is known to 6e-8 of its size, so that
+a step of less than some 1e-6/p has the noise of its contact for a velocity. A tuned preset counts
+lengths in heights of the block, from where its centre rests; in metres blocks of one shape err by
+their size, those of 30 m by tenths of the peak.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from engines.declaration import (
+    ASLEEP,
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    SLEEP,
+    Citation,
+    Engine,
+    Factor,
+    Help,
+    Precision,
+    Preset,
+    Rule,
+    Stepping,
+    factor,
+    level,
+    moving_base,
+)
+from engines.parts import (
+    NO_JAM,
+    Counted,
+    counted,
+    floor_half_size,
+    half_size,
+    imported,
+    iterations_for,
+    touching_spheres,
+)
+from engines.parts.reflection import returned
+from engines.run.export import Notes, Script, scaled
+from engines.scene import Scene
+from engines.settings import check, disagreement, given, one_of, setting
+from engines.world import FloatArray, Moment, Pose, Step
+
+OVERDAMPED = 1e5
+"""Damping ratio of a contact that corrects positions and is firm all the same, in single precision.
+"""
+
+
+ALOFT = 1e-2
+"""A block that sleeps while it leans by more than this part of alpha is on one corner.
+
+What sleeps on both leans by what the contact yields: up to 4e-5 of alpha.
+"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RapierSettings(Counted):
+    """Settings of Rapier, by default its own; None leaves a setting to the library.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", or "corners": small balls where the corners at the base are.
+    planar : bool
+        Lock the rotations that lead out of the plane, and put two corners into the middle plane
+        instead of four at the edges. A box has its four corners either way.
+    locked_aside : bool
+        Lock the translation out of the plane, too, where `planar` is set. The contact then has no
+        friction, in the plane either.
+    friction : float
+        Coefficient between block and base, their mean; the library's own is 0.5, with which a block
+        of H/B = 2 slides before it rocks.
+    substeps, iterations, stabilization : int or None
+        Of the solver: substeps in a step, iterations in each, and those that take out of the
+        velocities what the correction of positions has put in.
+    sweeps : float or None
+        Iterations over 1/sin^2(alpha), where `iterations` are None.
+    frequency, damping_ratio : float or None
+        Natural frequency [Hz] and damping ratio of the contact; both or neither. The library's are
+        30 and 10, and 60 Hz on what does not move.
+    correction : float or None
+        Ordinary steps in which a contact corrects a position, in place of the two: in a short step
+        it takes out no more than its share, which else would be a velocity made of rounding.
+    recycling : bool or None
+        Whether contacts are taken from the last step where bodies have hardly moved.
+    warm_starting : float or None
+        Part of the last step's impulses from which the solver starts; they are not scaled by the
+        ratio of two steps.
+    coulomb : bool or None
+        Give each contact a friction of its own instead of one to all four.
+    friction_in_bias_pass : bool or None
+        Whether friction is solved, too, where a step corrects depths.
+    sleeping : bool or None
+        Whether a block that has hardly moved for half a second is no longer simulated.
+    units : float or None
+        Units of length in the height of the block; None counts in metres.
+    centred : bool
+        Count heights from where the block's centre is at rest, not from the base.
+    base_depth : float
+        Half the depth of the base over the height of the block. Contacts are looked for from the
+        middle of the base: the deeper that is, the more coarsely.
+    corner_radius : float
+        Radius of the corner balls over the height. On a base that is deep, a ball whose centre is
+        rounded to where the surface is has no normal there, and no contact for a step.
+    reflection : bool
+        Give the sliding velocity of the corner about which the block turns back to it, by the
+        velocity of the base; not in the steps of an impact.
+    floor : str
+        How a base that moves is moved: by a "target" for the end of the step or its "velocity",
+        which the library leads it by; by "both" its place and its velocity; by "position" alone.
+    restitution : float
+        Coefficient of the block.
+    base_restitution : float or None
+        That of the base, the block's by default; the library takes their mean.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    planar: bool = False
+    locked_aside: bool = False
+    friction: float = setting(1.0, least=0.0)
+    substeps: int | None = setting(least=1)
+    iterations: int | None = setting(least=1)
+    stabilization: int | None = setting(least=0)
+    sweeps: float | None = setting(above=0.0)
+    frequency: float | None = setting(above=0.0, beside=("damping_ratio",))
+    damping_ratio: float | None = setting(above=0.0)
+    correction: float | None = setting(above=0.0)
+    recycling: bool | None = None
+    warm_starting: float | None = setting(least=0.0, most=1.0)
+    coulomb: bool | None = None
+    friction_in_bias_pass: bool | None = None
+    sleeping: bool | None = None
+    units: float | None = setting(above=0.0)
+    centred: bool = False
+    base_depth: float = setting(1.0, above=0.0)
+    corner_radius: float = setting(1e-5, above=0.0)
+    reflection: bool = False
+    floor: str = setting("target", names=("target", "velocity", "both", "position"))
+    restitution: float = setting(0.0, least=0.0, most=1.0)
+    base_restitution: float | None = setting(least=0.0, most=1.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def spring_of(self, dt_s: float) -> tuple[float, float] | None:
+        """Return a contact's frequency [Hz] and damping ratio; None leaves both to the library.
+
+        A spring of frequency f and damping ratio z takes the part dt / (dt + z / (pi f)) of a
+        depth out of it in a step dt.
+        """
+        if self.correction is not None:
+            return OVERDAMPED / (math.pi * self.correction * dt_s), OVERDAMPED
+        if self.frequency is None or self.damping_ratio is None:
+            return None
+        return self.frequency, self.damping_ratio
+
+
+class RapierWorld:
+    """Bodies on a kinematic box, whether that moves or not."""
+
+    moment = Moment.MIDDLE
+
+    def __init__(
+        self, scene: Scene, settings: RapierSettings, dt_s: float, library: Any = None
+    ) -> None:
+        self._rapier: Any = imported("rapier3d") if library is None else library
+        self._s, self._alpha = settings, scene.system.alpha
+        self._way = settings.floor if scene.frame == "world" else ""
+        self._led = self._way in ("target", "velocity")
+        self._driven = bool(self._way) or settings.reflection
+        self._dt = self._speed = self._place = self.lag_m = 0.0
+        self._unit, self._sunk = settings.unit_of(scene), settings.sunk_of(scene)
+        self._half = counted(half_size(scene.bodies[0]), self._unit)
+        self._iterations = iterations_for(scene, settings.iterations, settings.sweeps)
+        self.world = self._rapier.PhysicsWorld()
+        self.parameters = self.world.integration_parameters
+        self.named: dict[str, list[Any]] = {"softness": [], "ball": []}  # as a script calls them
+        self._set_solver(dt_s)
+        self.base = self._new_base(scene)
+        self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
+        self._body, self._state = self.bodies[0], np.zeros((len(self.bodies), len(Pose._fields)))
+        self._fault = self._read_back(scene) if library is None else ""
+
+    def _set_solver(self, dt_s: float) -> None:
+        s, spring = self._s, self._s.spring_of(dt_s)
+        settings = {
+            "num_solver_iterations": s.substeps,
+            "num_internal_pgs_iterations": self._iterations,
+            "num_internal_stabilization_iterations": s.stabilization,
+            "contact_recycling": s.recycling,
+            "warmstart_coefficient": s.warm_starting,
+            "friction_in_bias_pass": s.friction_in_bias_pass,
+        }
+        for name, value in given(settings).items():
+            setattr(self.parameters, name, value)
+        if s.coulomb is not None:
+            self.parameters.friction_model = self._rapier.FrictionModel.COULOMB
+        if spring is not None:
+            soft = self._rapier.SpringCoefficients(*spring)
+            self.parameters.contact_softness = self.parameters.static_contact_softness = soft
+            self.named["softness"].append(soft)
+
+    def _new_base(self, scene: Scene) -> Any:
+        s, kind = self._s, self._rapier.RigidBody
+        x, y, z = floor_half_size(scene)
+        x, y, z = counted((x, y, s.base_depth * z), self._unit)
+        floor = self._rapier.Collider.cuboid(x, y, z).translation((0.0, 0.0, -z))
+        restitution = s.restitution if s.base_restitution is None else s.base_restitution
+        floor = floor.friction(float(s.friction)).restitution(restitution)
+        targeted = self._way == "target"
+        base = kind.kinematic_position_based() if targeted else kind.kinematic_velocity_based()
+        base = base.translation((0.0, 0.0, -self._sunk))
+        return self.world.rigid_bodies[self.world.add_body(base, [floor])]
+
+    def _new_body(self, scene: Scene, number: int) -> Any:
+        s, unit, body = self._s, self._unit, scene.bodies[number]
+        at, collider, corners = body.at, self._rapier.Collider, s.geometry == "corners"
+        half = counted(half_size(body), unit)
+        if corners:
+            radius = s.corner_radius * scene.bodies[0].height
+            ball = collider.ball(radius * unit).density(0.0)
+            self.named["ball"].append(ball)
+            places = touching_spheres(scene, number, radius, planar=s.planar)
+            shapes = [ball.translation(counted(place, unit)) for place in places]
+            if scene.layout.rests(number):
+                shapes.append(collider.cuboid(*half).density(0.0))
+        else:
+            shapes = [collider.cuboid(*half).density(body.density / unit**3)]
+        friction = float(s.friction)  # the mean of two counts
+        shapes = [shape.friction(friction).restitution(s.restitution) for shape in shapes]
+        made = self._rapier.RigidBody.dynamic()
+        made = made.translation((at.x * unit, 0.0, at.z * unit - self._sunk))
+        if not at.at_rest:
+            velocity = (at.velocity_x * unit, 0.0, at.velocity_z * unit)
+            made = made.rotation((0.0, at.theta, 0.0)).linvel(velocity).angvel((0.0, at.rate, 0.0))
+        if s.planar:
+            made = made.enabled_rotations((False, True, False))
+            made = made.enabled_translations((True, not s.locked_aside, True))
+        if s.sleeping is not None:
+            made = made.can_sleep(s.sleeping)
+        if corners:
+            inertia = tuple(moment * unit**2 for moment in body.inertia)
+            mass = self._rapier.MassProperties((0.0, 0.0, 0.0), body.mass, inertia)
+            made = made.additional_mass_properties(mass)
+        block = self.world.rigid_bodies[self.world.add_body(made, shapes)]
+        block.recompute_mass_properties_from_colliders(self.world.colliders)  # else a step late
+        return block
+
+    def step(self, step: Step) -> None:
+        """Advance by a step; see `engines.world.SteppedWorld`."""
+        if step.dt_s != self._dt:
+            self.parameters.dt = step.dt_s
+        self.world.gravity = (step.pull_x * self._unit, 0.0, step.pull_z * self._unit)
+        if self._led:
+            self._lead(step)
+        elif self._driven:
+            self._drive(step)
+        self.world.step()
+        self._dt = step.dt_s
+        if self._way:
+            self._place = step.base_x * self._unit
+        if self._led:
+            self._place = self.base.translation.x
+            self.lag_m = max(self.lag_m, abs(self._place / self._unit - step.base_x))
+
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        for number, body in enumerate(self.bodies):
+            at, turn = body.translation, body.rotation
+            theta = 2.0 * math.atan2(turn.j, turn.w)
+            x, z = (at.x - self._place) / self._unit, (at.z + self._sunk) / self._unit
+            self._state[number] = x, z, theta, body.angvel.y
+        return self._state
+
+    def fault(self) -> str:
+        """Say which setting was not taken, or that the block sleeps where none can rest."""
+        if self._body.is_sleeping and abs(self.state()[0, 2]) > ALOFT * self._alpha:
+            return "the library put the block to sleep aloft"
+        step = {"dt": (self._dt or None, self.parameters.dt)}
+        return self._fault or disagreement(step, Precision.SINGLE.value)
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+        self.world.clear()
+
+    def _lead(self, step: Step) -> None:
+        """Let the library lead the base to its place."""
+        x = step.base_x * self._unit
+        if self._way == "target":
+            self.base.set_next_kinematic_translation((x, 0.0, -self._sunk))
+        else:
+            self.base.linvel = ((x - self._place) / step.dt_s, 0.0, 0.0)
+
+    def _drive(self, step: Step) -> None:
+        """Set the base's place and velocity, by which the pivot is given its own back, too."""
+        back = returned(step, self._dt) if self._s.reflection else 0.0
+        speed = step.base_velocity * self._unit if self._way == "both" else 0.0
+        slip = 0.0
+        if back:
+            corner = (step.side * self._half[0], 0.0, -self._half[2])
+            at = self._body.position.transform_point(corner)
+            slip = self._body.velocity_at_point(at).x - self._speed
+        self.base.translation = (self._place, 0.0, -self._sunk)
+        self.base.linvel = (speed - back * slip, 0.0, 0.0)
+        self._speed = speed
+
+    def _read_back(self, scene: Scene) -> str:
+        colliders = [self.world.colliders[it.colliders[0]] for it in (self.base, self._body)]
+        friction = 0.5 * sum(collider.friction for collider in colliders)
+        pairs = {
+            **{
+                f"mass {number}": (wanted.mass, found.mass)
+                for number, (wanted, found) in enumerate(
+                    zip(scene.bodies, self.bodies, strict=True)
+                )
+            },
+            "friction": (self._s.friction, friction),
+            "restitution": (self._s.restitution, colliders[1].restitution),
+            "iterations": (
+                self._iterations,
+                self.parameters.num_internal_pgs_iterations,
+            ),
+            "substeps": (self._s.substeps, self.parameters.num_solver_iterations),
+        }
+        return disagreement(pairs, Precision.SINGLE.value)
+
+
+def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
+    """Return a scene as calls of Rapier; see `engines.run.export`."""
+    notes, unit = Notes(chained=True), settings.unit_of(scene)
+    world = RapierWorld(scene, settings, dt_s, notes.of(imported("rapier3d"), "rapier"))
+    notes.name(world=world.world, floor=world.base, **world.named)
+    notes.name_bodies(world.bodies)
+    floor = settings.floor if scene.frame == "world" else ""
+    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+    moves = {
+        "target": [f"floor.set_next_kinematic_translation(({x}, 0.0, floor.translation.z))"],
+        "velocity": [f"floor.linvel = ({x} - floor.translation.x) / DT, 0.0, 0.0"],
+        "both": [
+            f"floor.translation = {x} - DT * {velocity}, 0.0, floor.translation.z",
+            f"floor.linvel = {velocity}, 0.0, 0.0",
+        ],
+        "": [],
+    }
+    one_of("floor of a script", floor, tuple(moves))
+    under = {"": "", "both": f" - {x}"}.get(floor, " - floor.translation.x")
+    return Script(
+        imports=("import rapier3d as rapier",),
+        settings=(
+            f"world.integration_parameters.dt = {dt_s!r}",
+            *notes.quoted("parameters.", "Softness", ".friction(", "can_sleep", "enabled_"),
+        ),
+        build=(*notes.lines(), "world.integration_parameters.dt = DT"),
+        step=(
+            f"world.gravity = {scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}",
+            *moves[floor],
+            "world.step()",
+        ),
+        pose=(
+            "turn = bodies[number].rotation",
+            "theta, rate = 2.0 * math.atan2(turn.j, turn.w), bodies[number].angvel.y",
+        ),
+        place=f"(bodies[0].translation.x{under}) / {unit!r}",
+    )
+
+
+TUNED = RapierSettings(
+    geometry="corners",
+    planar=True,
+    friction=NO_JAM,
+    substeps=1,
+    sweeps=10.0,
+    stabilization=0,
+    correction=10.0,
+    recycling=False,
+    warm_starting=0.0,
+    sleeping=False,
+    units=1.0,
+    centred=True,
+    base_depth=0.1,
+    floor="both",
+)
+
+LANDING = replace(TUNED, reflection=True)
+
+RECYCLED = "a contact of an earlier step: the block slides off its pivot"
+FRICTIONLESS = "a contact whose body cannot move aside has no friction at all"
+WITHOUT_NORMAL = "a ball whose centre rounds onto a surface has no contact there for a step"
+SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"
+
+DOCUMENTED = (
+    Citation("step", "1/60 s, the default", "IntegrationParameters.dt"),
+    Citation("substeps", "4, the default", "IntegrationParameters.num_solver_iterations"),
+    Citation("sleeping", "on, the default", "RigidBodyBuilder.can_sleep"),
+    Citation("friction", "0.5, of a pair the mean; here 1", "ColliderBuilder.friction"),
+    Citation(
+        "friction",
+        "simplified, one for all points; not solved where depths are corrected",
+        "IntegrationParameters.friction_model, friction_in_bias_pass",
+    ),
+    Citation(
+        "contact",
+        "a spring of 30 Hz, damping ratio 10; 60 Hz on what does not move",
+        "IntegrationParameters.contact_softness, static_contact_softness",
+    ),
+    Citation(
+        "contact",
+        "from 0.02 away, and kept while bodies move by less than 0.05",
+        "IntegrationParameters.normalized_prediction_distance, contact_recycling",
+    ),
+    Citation(
+        "iterations",
+        "1 a substep and 1 of stabilization, from all of the last impulses",
+        "IntegrationParameters.num_internal_pgs_iterations, warmstart_coefficient",
+    ),
+    Citation(
+        "without effect",
+        "allowed_linear_error 0.005, max_corrective_velocity 3, max_linear_velocity 400, "
+        "max_ccd_substeps 1, contact_clustering; no damping",
+        "IntegrationParameters, RigidBodyBuilder",
+    ),
+    Citation(
+        "floor",
+        "kinematic_position_based, set_next_kinematic_translation; shown second: linvel of one "
+        "that is velocity-based",
+        "rapier.rs, user guide for Python, Common recipes: Making a moving platform",
+    ),
+)
+"""What its documentation sets, in rapier3d 0.36.1."""
+
+RECOMMENDED = (
+    Citation("step", "1/120 s", "rapier.rs, user guide for Python, Integration parameters"),
+    Citation("substeps", "8, for a more accurate simulation", "the same page"),
+    Citation("friction_model", "Coulomb, the more accurate one", "integration_parameters.rs"),
+)
+"""What it recommends for accurate contact."""
+
+FACTORS = (
+    Factor(
+        "contact spring",
+        ("frequency", "damping_ratio", "correction"),
+        (
+            level("1e3 Hz", frequency=1e3, damping_ratio=1.0, correction=None),
+            level("1e6 Hz", frequency=1e6, damping_ratio=1.0, correction=None),
+            level("1 step", correction=1.0),
+            level("1000 steps", correction=1000.0),
+        ),
+    ),
+    factor("recycling", traps={"fixed": RECYCLED}, name="contact recycling"),
+    ASLEEP,
+    factor("locked_aside", level("y locked", trap=FRICTIONLESS, locked_aside=True), name="locks"),
+    factor("stabilization"),
+    factor("substeps"),
+    Factor(
+        "iterations",
+        ("iterations", "sweeps"),
+        (
+            level("10", BOTH, iterations=10),
+            level("1000", iterations=1000),
+        ),
+    ),
+    factor("warm_starting"),
+    factor("coulomb", level("Coulomb", BOTH, coulomb=True), name="friction model"),
+    factor(
+        "friction_in_bias_pass",
+        level("on", BOTH, friction_in_bias_pass=True),
+        name="friction while depths are corrected",
+    ),
+    factor("friction", level("0.5, the library's own", (DEFAULT,), SMOOTH, friction=0.5)),
+    Factor(
+        "geometry",
+        ("geometry", "planar"),
+        (level("4 corners, free", planar=False), level("planar box", geometry="box")),
+    ),
+    factor("units", level("1.5 a height", units=1.5)),
+    factor("centred", name="origin"),
+    Factor(
+        "depth of the base",
+        ("base_depth", "corner_radius"),
+        (
+            level("1 H", base_depth=1.0),
+            level(
+                "1 H, corners of 1e-7 H", trap=WITHOUT_NORMAL, base_depth=1.0, corner_radius=1e-7
+            ),
+        ),
+        by_default=False,
+    ),
+    factor(
+        "corner_radius",
+        level("H/1000", corner_radius=1e-3),
+        level("1e-7 H", corner_radius=1e-7),
+    ),
+    moving_base("both", "target", "velocity", "position"),
+)
+"""What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Leave the translation out of the plane free: locked, with two rotations, no friction acts",
+        *(BEST, "locks", "y locked"),
+    ),
+    Rule(
+        "Switch `contact_recycling` off: what turns slowly slides off an old contact",
+        *(BEST, "contact recycling", BY_DEFAULT),
+    ),
+    Rule(
+        "Forbid sleep, `can_sleep(False)`: gravity that changes wakes nothing",
+        *SLEEP,
+    ),
+    Rule(
+        "Stiffen contacts, `contact_softness`: they have 30 Hz, and 60 Hz on what does not move",
+        *(BEST, "contact spring", BY_DEFAULT),
+    ),
+)
+"""What its users should know first."""
+
+NAIVE = Preset(
+    name="naive",
+    settings=RapierSettings(),
+    step_s=1.0 / 60.0,
+    documented=DOCUMENTED,
+    frame="world",
+    own={"friction": 0.5},
+)
+
+ENGINE = Engine(
+    name="rapier",
+    title="Rapier",
+    library="rapier3d",
+    packages=("rapier3d",),
+    install="rocking[rapier]",
+    build=RapierWorld,
+    stacks=True,
+    presets=(
+        NAIVE,
+        NAIVE.at_rest(),
+        NAIVE.recommended(
+            *RECOMMENDED,
+            step_s=1.0 / 120.0,
+            substeps=8,
+            coulomb=True,
+        ),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            stacked=None,
+            helped_by={
+                Help.STEPS: None,
+                Help.REFLECTION: {"reflection": False},
+            },
+        ),
+    ),
+    precision=Precision.SINGLE,
+    shortest_step=3e-6,
+    script=script,
+    factors=FACTORS,
+    rules=RULES,
+)
