@@ -86,6 +86,8 @@ class NewtonWorld:
 
 def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
     """Return a scene as calls of Newton; see `engines.parts.script`."""
+    if scene.stacked:
+        raise ValueError("Newton's bodies that rest on others are not written out")
     n, at = numbers(scene, settings), scene.bodies[0].at
     lines = filled(build, n=n, s=values(scene, settings, dt_s))
     return Script(

@@ -2,10 +2,8 @@
 
 import math
 import re
-import resource
 import subprocess
 import sys
-from dataclasses import replace
 
 import commanding
 import pytest
@@ -18,8 +16,9 @@ from analytic.record import Record
 from analytic.response import Reason
 from engines import ENGINES, Scene, installed_engines
 from engines.declaration import UNTUNED, Stepping
+from studies import export
 from studies.__main__ import run as rocking
-from studies.export import files, script_of, unwritten
+from studies.export import files, script_of
 from studies.kit.identity import version_of
 from studies.kit.store import project_version
 
@@ -80,7 +79,7 @@ def scenes_of(engine, kind):
 
 def write(folder, engine, asked, expected):
     folder.mkdir(exist_ok=True)
-    for name, text in files(ENGINES[engine], asked, expected, expected).items():
+    for name, text in files(ENGINES[engine].use(asked), expected, expected).items():
         (folder / name).write_text(text)
     return folder / "block.py"
 
@@ -89,8 +88,9 @@ def write(folder, engine, asked, expected):
 def test_exported_scenes_find_alone_what_the_runs_do(engine, kind, tmp_path):
     scripts, expected, declared = [], [], ENGINES[engine]
     for number, asked in enumerate(scenes_of(engine, kind)):
-        if unwritten(declared, declared.use(asked).preset, asked):
-            assert (engine, kind) == ("newton", "frame")
+        if (engine, kind) == ("newton", "frame"):
+            with pytest.raises(ValueError, match="not written out"):
+                script_of(declared.use(asked))
             continue
         response = run(engine, asked)
         if response.reason:
@@ -131,43 +131,37 @@ def test_a_script_runs_from_any_folder_and_tells_versions_and_another_peak(engin
 
 @pytest.mark.parametrize(("engine", "preset"), PAIRS)
 def test_settings_stand_in_the_files_letter_by_letter(engine, preset):
-    asked, declared = scene(PULSE, preset), ENGINES[engine]
-    script = script_of(declared, asked)
+    use = ENGINES[engine].use(scene(PULSE, preset))
+    script = script_of(use)
     whole = "\n".join((*script.build, *script.step, *script.files.values()))
-    whole = whole.replace("DT", repr(declared.use(replace(asked, preset=preset)).dt_s))
+    whole = whole.replace("DT", repr(use.dt_s))
     assert script.settings and [line for line in script.settings if line not in whole] == []
-    friction = repr(float(declared.preset(preset).settings.friction))
-    assert any(friction in line for line in script.settings)
-    with pytest.raises(ValueError, match="writes no scripts"):
-        script_of(replace(declared, script=None), asked)
-
-
-def test_the_preset_is_an_option_or_stands_after_a_colon(tmp_path, capsys):
-    texts = []
-    for asked in (["mujoco:naive"], ["mujoco", "--preset", "naive"]):
-        out = tmp_path / str(len(asked))
-        assert rocking(["export", *CASE, "--engine", *asked, "--out", str(out)]) == 0
-        texts.append([(out / name).read_text() for name in ("block.py", "block.xml")])
-        assert "preset: " not in capsys.readouterr().out
-    assert texts[0] == texts[1]
+    assert any(repr(float(use.settings.friction)) in line for line in script.settings)
 
 
 FRAME, SLIDE = ["--scene", "frame", "--load", "2"], ["--scene", "slide", "--friction", "0.2"]
 
 
 @pytest.mark.parametrize(
-    ("options", "expected"), [([], "0.3"), (FRAME, "0.2056"), (SLIDE, "-0.1258")]
+    ("engine", "options", "expected"),
+    [
+        ("pymunk", [], "0.3"),
+        ("pymunk", FRAME, "0.2056"),
+        ("pymunk", SLIDE, "-0.1258"),
+        ("pymunk:recommended", [], "0.3"),
+    ],
 )
 def test_the_command_writes_what_runs_and_does_not_write_over_it(
-    options, expected, tmp_path, capsys
+    engine, options, expected, tmp_path, capsys
 ):
-    out = ["--engine", "pymunk", "--step", "5e-4", "--out", str(tmp_path / "scene")]
-    assert rocking(["export", *CASE, *options, *out]) == 0
+    asked = ["export", *CASE, *options, "--engine", engine, "--step", "5e-4"]
+    assert rocking([*asked, "--out", str(tmp_path / "scene")]) == 0
     output = capsys.readouterr().out
-    assert f"to expect: {expected}" in output and "preset: fixed" in output
-    assert ("pymunk:landing" in output) == (options is not SLIDE)  # what compare would ask
+    assert f"to expect: {expected}" in output
+    assert ("preset: fixed" in output) == (engine == "pymunk")
+    assert ("pymunk:landing" in output) == (engine == "pymunk" and options is not SLIDE)
     assert run_scripts("pymunk", tmp_path / "scene/block.py").returncode == 0
-    refused(capsys, ["export", *CASE, *options, *out], "it must be a new or an empty folder")
+    refused(capsys, [*asked, "--out", tmp_path / "scene"], "it must be a new or an empty folder")
 
 
 def test_what_stays_at_rest_is_refused(tmp_path, capsys):
@@ -177,22 +171,12 @@ def test_what_stays_at_rest_is_refused(tmp_path, capsys):
     assert not out.exists()
 
 
-def test_no_room_for_a_file_leaves_no_part_of_a_script(tmp_path, capsys):
-    """A ground motion that is too long for the disk; the folder may then be asked for again."""
-    rows = (f"{0.005 * i:.3f},{0.4 * math.sin(0.03 * i)}" for i in range(1200))
-    record = tmp_path / "record.csv"
-    record.write_text("\n".join(["time_s,acceleration_g", *rows, "6,0"]))
-    asked = ["export", *commanding.BLOCK, "--record", str(record), "--engine", "mujoco", "--out"]
-    assert rocking([*asked, str(tmp_path / "before")]) == 0  # whatever compiles is kept by now
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (32_000, hard))
-    try:
-        capsys.readouterr()
-        refused(capsys, [*asked, tmp_path / "scene"], "File too large")
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+def test_a_file_that_cannot_be_written_leaves_no_part_of_a_script(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(export, "files", lambda *_: {"block.py": "1", "ground.py": "\ud800"})
+    asked = ["export", *CASE, "--engine", "pymunk", "--out", str(tmp_path / "scene")]
+    with pytest.raises(UnicodeEncodeError):
+        rocking(asked)
     assert list((tmp_path / "scene").iterdir()) == []
-    assert rocking([*asked, str(tmp_path / "scene")]) == 0
 
 
 def test_what_an_engine_cannot_hold_is_one_line(tmp_path, capsys):
@@ -200,4 +184,4 @@ def test_what_an_engine_cannot_hold_is_one_line(tmp_path, capsys):
     assert rocking(["export", *CASE, *FRAME, *out]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("failed: newton:fixed: not available: ")
-    assert "several bodies on one base" in line and not (tmp_path / "scene").exists()
+    assert "not written out" in line and not (tmp_path / "scene").exists()

@@ -93,9 +93,7 @@ advise --engine mujoco --dt 0.002 --out DIR | --out is DIR; it may be given only
 
 # other scenes, exported or shown
 export CASE --out DIR --engine bullet | --engine is 'bullet', perhaps 'pybullet'; it must be
-export CASE --out DIR --engine mujoco --preset landing | --preset is 'landing'; it must have
 export CASE --out DIR --engine mujoco:landing | its preset must have equal steps: naive, naive-base
-export CASE --out DIR --engine mujoco:naive --preset fixed | only where --engine has none
 export CASE --out DIR --engine mujoco --scene frame --load 2 --columns 1 | columns is 1; it must be
 compare CASE --scene frame --load 2 --columns 100000 | columns is 100000; it must be a whole number
 animate CASE --out film.gif --scene frame | --load missing
