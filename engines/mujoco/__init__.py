@@ -1,19 +1,181 @@
-"""MuJoCo: what it can do, how it is used, what its users should know first."""
+"""MuJoCo: its presets, where they come from, and what the studies try of its settings."""
 
-from engines.declaration import Engine, Help, Preset, Stepping
-from engines.mujoco.build import LIBRARY_STEP_S, world_of
-from engines.mujoco.script import script
-from engines.mujoco.settings import (
-    DOCUMENTED,
-    FACTORS,
-    LANDING,
-    RECOMMENDED,
-    RULES,
-    STACKED,
-    TUNED,
-    MujocoSettings,
+from dataclasses import replace
+from typing import Any
+
+from engines.declaration import (
+    BOTH,
+    DEFAULT,
+    UNMOVED_BASE,
+    Citation,
+    Engine,
+    Factor,
+    Help,
+    Preset,
+    Rule,
+    Stepping,
+    factor,
+    level,
+    moving_base,
 )
-from engines.mujoco.stacks import stacks_of
+from engines.mujoco.build import LIBRARY_STEP_S, MujocoSettings, MujocoWorld, script
+
+TUNED = MujocoSettings(
+    geometry="corners",
+    planar=True,
+    friction=10.0,
+    cone="elliptic",
+    solver="Newton",
+    jacobian="dense",
+    tolerance=1e-15,
+    iterations=100,
+    impratio=1e4,
+    damping=1.0,
+    sliding_damping=1.0,
+    stiffness=0.01,
+    impedance=(0.9999, 0.9999, 0.001, 0.5, 2.0),
+    floor="surfacevel",
+)
+
+LANDING = replace(
+    TUNED,
+    friction=1e3,
+    stiffness=1.0,
+    impratio=3e3,
+    by_phase=True,
+    reflection=True,
+    carry=1e-4,
+    preload=True,
+)
+
+STACKED: dict[str, Any] = {
+    "friction": 2.0,
+    "impratio": 100.0,
+    "tolerance": 0.0,
+    "soft_surface": 4.0,
+}
+"""Where bodies rest on others: with the block's own contact they part; the softness of the surface
+is over sin(alpha)^2 (`MujocoSettings.fitted`)."""
+
+STEEP = "a pyramid this steep leaves too little normal force"
+ZERO = "one zero makes it the default, 0.02 s 1"
+ORIGINAL: dict[str, Any] = {"damping": None, "sliding_damping": None, "stiffness": None}
+"""The direct form of the reference given up."""
+
+REFERENCE, MODELING = "XMLreference.rst of MuJoCo 4.0.0", "modeling.rst of MuJoCo 4.0.0"
+
+DOCUMENTED = (
+    Citation("step", "timestep 0.002", f"{REFERENCE}, option"),
+    Citation("integrator", "Euler", f"{REFERENCE}, option"),
+    Citation("solver", "Newton, iterations 100, tolerance 1e-8", f"{REFERENCE}, option"),
+    Citation("cone", "pyramidal, impratio 1", f"{REFERENCE}, option"),
+    Citation("noslip", "noslip_iterations 0", f"{REFERENCE}, option"),
+    Citation("sleeping", "sleep disable", f"{REFERENCE}, option/flag"),
+    Citation(
+        "friction", "1 0.005 0.0001, as here, of a pair the larger", f"{REFERENCE}, body/geom"
+    ),
+    Citation(
+        "friction", "condim 3: sliding alone, neither spin nor roll", f"{REFERENCE}, body/geom"
+    ),
+    Citation("margin", "0", f"{REFERENCE}, body/geom"),
+    Citation(
+        "contact", "solref 0.02 1, solimp 0.9 0.95 0.001 0.5 2", f"{MODELING}, Solver parameters"
+    ),
+    Citation("contact", "its inertia by an estimate: diagexact off", f"{REFERENCE}, option/flag"),
+    Citation(
+        "without effect",
+        "refsafe, island and multiccd on, ls_iterations 50, ls_tolerance 0.01; the warm start's "
+        "is below 1e-3",
+        f"{REFERENCE}, option, option/flag",
+    ),
+    Citation(
+        "floor", "a regular body, weld to a mocap body: better-behaved", f"{MODELING}, MoCap bodies"
+    ),
+)
+"""What the library's documentation says of all that its defaults decide."""
+
+RECOMMENDED = (
+    Citation("integrator", "implicitfast", f"{MODELING}, Tuning defaults"),
+    Citation("cone", "elliptic, impratio 10", f"{MODELING}, Tuning defaults"),
+    Citation("contact", "solref[0] 0.004 to 0.01 s, at least 2 timesteps", f"{MODELING}, the same"),
+    Citation("solver", "Newton, tolerance 1e-10", f"{MODELING}, the same"),
+)
+"""What it recommends for rigid contact in place of its defaults, which it does not."""
+
+FACTORS = (
+    factor(
+        "cone",
+        level("pyramid, friction 1", cone="pyramidal", friction=1.0),
+        level("pyramid, friction 1000", trap=STEEP, cone="pyramidal", friction=1e3),
+        level("ellipse, friction 10", (DEFAULT,), cone="elliptic", friction=10.0),
+        level("ellipse, friction 1000", cone="elliptic", friction=1e3),
+    ),
+    factor("friction", traps={DEFAULT: STEEP}),
+    factor(
+        "solver",
+        level("CG", BOTH, solver="CG"),
+        level("PGS", BOTH, solver="PGS"),
+        by_default=False,
+    ),
+    factor("tolerance", level("1e-4", tolerance=1e-4), name="solver tolerance"),
+    factor("iterations", level("2", iterations=2), name="solver iterations", by_default=False),
+    Factor(
+        "reference",
+        (*ORIGINAL, "impedance"),
+        (
+            level("0.02 s 1, best impedance", **ORIGINAL),
+            level("2 dt 1", solref=(2.0, 1.0), **ORIGINAL),
+            level("10 dt 1", solref=(10.0, 1.0), **ORIGINAL),
+            level("2 dt 1", (DEFAULT,), solref=(2.0, 1.0)),
+            level("2 dt 0", trap=ZERO, solref=(2.0, 0.0), **ORIGINAL),
+            level("b dt 0.3", damping=0.3, sliding_damping=0.3),
+            level("b dt 1.9", damping=1.9, sliding_damping=1.9),
+            level("k dt² 1e-4", stiffness=1e-4),
+            level("k dt² 0.3", stiffness=0.3),
+        ),
+    ),
+    factor(
+        "impedance",
+        level("0.9 to 0.95, the default", impedance=(0.9, 0.95, 0.001, 0.5, 2.0)),
+        level("0.99", impedance=(0.99, 0.99, 0.001, 0.5, 2.0)),
+        by_default=False,
+    ),
+    factor("impratio", level("100", impratio=100.0)),
+    factor("diagexact", level("exact", BOTH, diagexact=True), name="inertia of a contact"),
+    factor("noslip_iterations", level("10 iterations", BOTH, noslip_iterations=10), name="noslip"),
+    factor(
+        "integrator",
+        level("RK4", BOTH, integrator="RK4"),
+        level("implicit", integrator="implicit"),
+        level("implicitfast", integrator="implicitfast"),
+    ),
+    factor("margin", level("1e-3 B", margin=1e-3), level("1e-2 B", margin=1e-2)),
+    Factor(
+        "geometry",
+        ("geometry", "planar"),
+        (
+            level("planar box", geometry="box"),
+            level("hull", BOTH, geometry="hull"),
+            level("4 corners, free", planar=False),
+            level("planar box", (DEFAULT,), planar=True),
+        ),
+    ),
+    moving_base("surfacevel", "weld", "position"),
+)
+"""What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Give contacts a `solref` that follows the step: it is 0.02 s, and soft",
+        *(DEFAULT, "reference", "2 dt 1"),
+        kept=True,
+    ),
+    Rule(
+        "Give a base that is moved its velocity, `surfacevel`: friction does not feel a mocap move",
+        *UNMOVED_BASE,
+    ),
+)
+"""What its users should know first."""
 
 NAIVE = Preset(
     name="naive",
@@ -29,7 +191,7 @@ ENGINE = Engine(
     library="mujoco",
     packages=("mujoco",),
     install="rocking",
-    build=world_of,
+    build=MujocoWorld,
     stacks=True,
     presets=(
         NAIVE,
@@ -48,7 +210,6 @@ ENGINE = Engine(
             settings=TUNED,
             step=2.5e-4,
             stacked=STACKED,
-            stacks=stacks_of,
         ),
         Preset(
             name="landing",

@@ -1,77 +1,342 @@
-"""MuJoCo: how a scene is built, set, read back and stepped."""
+"""MuJoCo: its settings, and how a scene is built, set, read back and stepped."""
 
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib import import_module
 from typing import Any
+from xml.etree import ElementTree
 
-from engines.mujoco.contact import notice, prepare, read
-from engines.mujoco.contact_state import ContactState, Forces, arrays_of, begin_contact
-from engines.mujoco.model import OPTIONS, coordinates, impedance_of, model_xml
-from engines.mujoco.settings import MujocoSettings, kept
-from engines.parts.compiled import interpreted, switched_off
-from engines.scene import Scene
-from engines.settings import disagreement
-from engines.world import Driver, FloatArray, Moment, Step
+import numpy as np
+
+from engines.mujoco.contact import (
+    DIRECT,
+    MOST_GROWTH,
+    RELEASED_GROWTH,
+    SCALED,
+    UNSET,
+    Arrays,
+    ContactState,
+    Forces,
+    notice,
+    prepare,
+    read,
+    set_reference,
+)
+from engines.parts import corner_spheres, floor_half_size, half_size, hull_points
+from engines.parts.compiled import fill, interpreted, switched_off
+from engines.scene import BASE, Scene
+from engines.settings import check, disagreement, setting
+from engines.world import ContactPhase, Driver, FloatArray, Moment, Pose, Script, Step
 
 LIBRARY_STEP_S = 0.002
 """The library's own time step [s]."""
 
-KINDS = {"cone": "mjCONE_", "solver": "mjSOL_", "jacobian": "mjJAC_", "integrator": "mjINT_"}
-"""Options that the library numbers, by the names that it gives their values."""
+INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
+"""Integrators of the library."""
+
+NARROWEST_CONE = 0.1
+"""Friction over the root of impratio: what the solver takes for the cone; it errs in a narrower
+one."""
+
+FLOOR_MASSES = 1000.0
+"""Mass of a welded base over that of the bodies on it. From ten on it hardly matters; but the
+library's own for so large a box, 240000 at equal densities, is where its solver ends too early."""
+
+OPTIONS = {
+    **{"cone": "mjCONE_", "solver": "mjSOL_", "jacobian": "mjJAC_", "integrator": "mjINT_"},
+    **dict.fromkeys(("tolerance", "iterations", "impratio", "noslip_iterations"), ""),
+}
+"""Options of the model -> how the library's names of their values begin, where they have any."""
+
+PLANAR_JOINTS = (
+    '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
+    '<joint type="hinge" axis="0 1 0"/>'
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MujocoSettings:
+    """Settings of MuJoCo, by default its own; None leaves a setting to the library.
+
+    Of a contact (`engines.mujoco.contact`) b and k are given without units, as b dt and k dt^2:
+    b dt = 1 takes all velocity out of a contact within one step.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", "corners": small spheres where the corners at the base are, or "hull": a convex
+        mesh of the block's eight corners.
+    planar : bool
+        Give the block two slides and a hinge, and two corners in the middle plane, instead of a
+        free joint and four corners at the edges.
+    friction : float
+        Coefficient between block and base.
+    corner_radius, margin, carry : float or None
+        Over the width: radius of the spheres; gap from which on a contact acts; gap within which
+        the corner about which the block turns stays in contact, however long the step.
+    cone, solver, jacobian, tolerance, iterations, impratio, integrator, noslip_iterations
+        Options of the library.
+    diagexact : bool or None
+        Scale each contact's regularization by the inertia that it feels, not by an estimate of it
+        made where the bodies were built.
+    damping, sliding_damping, stiffness : float or None
+        b dt along the contact's normal and along the base, and k dt^2; all or none.
+    impedance : tuple of float or None
+        The five numbers of solimp; needed wherever damping is set.
+    soft_surface : float or None
+        Depth over g dt^2 within which a contact grows from the first of the impedances to the
+        second, in place of their width; it keeps contacts that close together from parting. Of
+        bodies that rest on others it is over g dt^2 sin(alpha)^2, and softens the first one, too.
+    solref : tuple of float or None
+        The contact in the library's other form, in place of damping and stiffness: its time
+        constant over dt and its damping ratio. Both should be positive: the library takes a pair
+        with one zero for its own default, and goes on.
+    floor : str
+        How a base that moves is moved: by a "weld" to a body that is, by its "surfacevel", or by
+        "position" alone.
+    by_phase, reflection, preload : bool
+        Use `stiffness` at rest alone; give the velocity of the corner about which the block turns
+        back to it; press that corner by what its force yields, where `carry` is set.
+    """
+
+    geometry: str = setting("box", names=("box", "corners", "hull"))
+    planar: bool = False
+    friction: float = setting(1.0, least=0.0)
+    corner_radius: float = setting(1e-7, above=0.0)
+    cone: str | None = None
+    solver: str | None = None
+    jacobian: str | None = None
+    tolerance: float | None = setting(least=0.0)
+    iterations: int | None = setting(least=0)
+    diagexact: bool | None = None
+    impratio: float | None = setting(least=0.0)
+    # a reference with one zero would be replaced by the library's default
+    damping: float | None = setting(above=0.0, beside=("sliding_damping", "stiffness"))
+    sliding_damping: float | None = setting(above=0.0)
+    stiffness: float | None = setting(above=0.0)
+    impedance: tuple[float, ...] | None = None
+    soft_surface: float | None = setting(above=0.0)
+    by_phase: bool = False
+    reflection: bool = False
+    carry: float | None = setting(above=0.0)
+    preload: bool = False
+    integrator: str | None = setting(names=INTEGRATORS)
+    noslip_iterations: int | None = setting(least=0)
+    solref: tuple[float, float] | None = None
+    margin: float | None = setting(least=0.0)
+    floor: str = setting("weld", names=("weld", "surfacevel", "position"))
+
+    def __post_init__(self) -> None:
+        check(self)
+        if self.damping is not None and self.impedance is None:
+            raise ValueError("impedance is None; it must be given wherever damping is")
+        if self.solref is not None and self.damping is not None:
+            raise ValueError(
+                f"solref is {self.solref!r}; it must be None wherever damping is given"
+            )
+
+    def fitted(self, scene: Scene) -> "MujocoSettings":
+        """Return settings whose impratio the friction allows, and whose soft surface fits.
+
+        Velocities are held and places follow, so that in every step a pivot is lifted by
+        (theta' dt)^2 R/2 along the base's normal. A contact makes up for it where it yields as much
+        to its force: by (1 - d)/d, d being its impedance, times force over mass. One that yields by
+        less at its surface lets go, and three columns or more need not come together again
+        (EQUATIONS.md, "The rocking frame"). One that yields by much less a little deeper overshoots
+        from step to step, and the columns hand their load on. Both ask for a surface in proportion
+        to the lift, which is that of theta' = p alpha: to sin(alpha)^2.
+        """
+        s = self
+        if scene.stacked and s.impedance and s.soft_surface is not None:
+            yields = s.soft_surface * math.sin(scene.system.alpha) ** 2
+            surface, *below = s.impedance
+            softest = min(surface, 1.0 / (1.0 + yields))
+            s = replace(s, impedance=(softest, *below), soft_surface=yields)
+        if s.impratio is None or "impratio" in scene.settings:
+            return s
+        return replace(s, impratio=min(s.impratio, (s.friction / NARROWEST_CONE) ** 2))
+
+    def solimp(self, scene: Scene, dt_s: float) -> tuple[float, ...]:
+        """Return the five numbers of solimp, the width [m] of a soft surface among them, or none.
+
+        They are the impedances at the surface and at the width, the width, midpoint and power.
+        """
+        if self.impedance is None or self.soft_surface is None:
+            return self.impedance or ()
+        surface, whole, _, *curve = self.impedance
+        return surface, whole, self.soft_surface * scene.system.gravity * dt_s**2, *curve
+
+
+def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
+    """Return the model of a scene in MuJoCo's own language, for ordinary steps of dt_s [s].
+
+    Bodies stand upright at rest, wherever they begin. The step, and the references of contacts that
+    go by it, are not in it: a run sets them.
+    """
+    margin = (s.margin or 0.0) * scene.system.width
+    options = " ".join(f'{k}="{getattr(s, k)}"' for k in OPTIONS if getattr(s, k) is not None)
+    exact = "" if s.diagexact is None else "enable" if s.diagexact else "disable"
+    flag = f'<flag diagexact="{exact}"/>' if exact else ""
+    bodies = "".join(_body(scene, number, s, margin) for number in range(len(scene.bodies)))
+    pairs = "" if s.impedance is None else "".join(_pairs(scene, s, margin, dt_s))
+    base, floor, weld = _base(scene, s)
+    meshes = ""
+    if s.geometry == "hull":
+        hulls = ((n, " ".join(map(_row, hull_points(each)))) for n, each in enumerate(scene.bodies))
+        each = (f'<mesh name="{_named("hull", n)}" vertex="{points}"/>' for n, points in hulls)
+        meshes = f"<asset>{''.join(each)}</asset>"
+    return (
+        f"<mujoco><option {options}>{flag}</option>{meshes}<worldbody>{base}{bodies}"
+        f"{floor}</worldbody><contact>{pairs}</contact>{weld}</mujoco>"
+    )
+
+
+def _base(scene: Scene, s: MujocoSettings) -> tuple[str, str, str]:
+    """Return the base; or what leads it, the base, whose joint comes last, and the weld of both."""
+    friction, first = _friction(s), scene.bodies[0]
+    if scene.frame != "world":
+        return f'<geom name="base" type="plane" size="1 1 1" {friction}/>', "", ""
+    at = f'pos="0 0 {-first.height}"'
+    box = f'<geom name="base" type="box" size="{_row(floor_half_size(scene))}"'
+    if s.floor != "weld":
+        # a plane may not move, so a box does; any surface velocity will do to switch it on
+        slides = f'surfacevel="{int(s.floor == "surfacevel")} 0 0"'
+        return f'<body mocap="true" {at}>{box} {slides} {friction}/></body>', "", ""
+    mass = FLOOR_MASSES * sum(body.mass for body in scene.bodies)
+    return (
+        f'<body name="guide" mocap="true" {at}/>',
+        f'<body name="floor" {at}><freejoint/>{box} mass="{mass}" {friction}/></body>',
+        '<equality><weld body1="guide" body2="floor"/></equality>',
+    )
+
+
+def _body(scene: Scene, number: int, s: MujocoSettings, margin: float) -> str:
+    """Return a body, and what it touches others with, or is touched on."""
+    body, (x, z) = scene.bodies[number], scene.bodies[number].home
+    shapes = {}
+    if s.geometry == "corners":
+        radius = s.corner_radius * scene.system.width
+        for order, each in enumerate(scene.layout.contacts):
+            if each.body == number:
+                at = corner_spheres(body, radius, planar=s.planar, face=each.face)
+                for name, centre in zip(_corners(order, s), at, strict=True):
+                    shapes[name] = f'type="sphere" size="{radius}" pos="{_row(centre)}"'
+    if s.geometry == "hull":
+        shapes[_named("hull", number)] = f'type="mesh" mesh="{_named("hull", number)}"'
+    elif s.geometry == "box" or scene.layout.rests(number):
+        shapes[_named("box", number)] = f'type="box" size="{_row(half_size(body))}"'
+    held = f'{_friction(s)} margin="{margin}"'
+    geoms = "".join(f'<geom name="{name}" {shape} {held}/>' for name, shape in shapes.items())
+    inertial = f'<inertial pos="0 0 0" mass="{body.mass}" diaginertia="{_row(body.inertia)}"/>'
+    joints = PLANAR_JOINTS if s.planar else "<freejoint/>"
+    return f'<body pos="{x} 0 {z}">{joints}{inertial}{geoms}</body>'
+
+
+def _pairs(scene: Scene, s: MujocoSettings, margin: float, dt_s: float) -> Iterator[str]:
+    """Yield what touches what: the corners of each contact, those at -x first."""
+    friction = _row((s.friction, s.friction, 0.005, 0.0001, 0.0001))
+    # any direct form will do for now: it is set with the first step
+    reference = "" if s.damping is None else 'solref="-1 -1" solreffriction="-1 -1"'
+    held = f'friction="{friction}" margin="{margin}" solimp="{_row(s.solimp(scene, dt_s))}"'
+    shape = "hull" if s.geometry == "hull" else "box"
+    for order, each in enumerate(scene.layout.contacts):
+        on = "base" if each.on == BASE else _named(shape, each.on)
+        whole = [_named(shape, each.body)]
+        for name in _corners(order, s) if s.geometry == "corners" else whole:
+            yield f'<pair geom1="{on}" geom2="{name}" condim="3" {held} {reference}/>'
+
+
+def _corners(order: int, s: MujocoSettings) -> list[str]:
+    """Return the names of the spheres of a contact, by its place in the layout."""
+    count = 2 if s.planar else 4
+    return [f"corner{order * count + number}" for number in range(count)]
+
+
+def _named(shape: str, number: int) -> str:
+    """Return the name of a body's shape; the first body's is the shape's."""
+    return f"{shape}{number or ''}"
+
+
+def _friction(s: MujocoSettings) -> str:
+    return f'friction="{s.friction} 0.005 0.0001"'
+
+
+def _row(numbers: tuple[float, ...] | list[float]) -> str:
+    return " ".join(map(repr, numbers))
+
+
+def coordinates(scene: Scene, s: MujocoSettings) -> tuple[list[float], list[float]]:
+    """Return qpos and qvel from which the bodies set out; see `Arrays`."""
+    places: list[float] = []
+    velocities: list[float] = []
+    for body in scene.bodies:
+        at, half, (x, z) = body.at, 0.5 * body.at.theta, body.home
+        if s.planar:
+            places += (at.x - x, at.z - z, at.theta)
+            velocities += (at.velocity_x, at.velocity_z, at.rate)
+        else:
+            places += (at.x, 0.0, at.z, math.cos(half), 0.0, math.sin(half), 0.0)
+            velocities += (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
+    if scene.frame == "world" and s.floor == "weld":
+        places += (0.0, 0.0, -scene.bodies[0].height, 1.0, 0.0, 0.0, 0.0)
+        velocities += 6 * (0.0,)
+    return places, velocities
 
 
 class MujocoWorld:
-    """A block on a plane, or on a box where the base moves.
+    """Bodies on a plane, or on a box where the base moves.
 
     A driven body has no velocity that friction could feel, so the box is given the surface
     velocity that its motion has, or is another body, welded to the driven one.
     """
 
     def __init__(self, scene: Scene, settings: MujocoSettings, dt_s: float) -> None:
-        self._s = s = settings
-        self._mj = import_module("mujoco")
+        self.settings = s = settings.fitted(scene)
+        self._mj, self._scene = import_module("mujoco"), scene
         self.moment = Moment.END if s.integrator == "RK4" else Moment.MIDDLE
-        self._model = self._mj.MjModel.from_xml_string(model_xml(scene, s, dt_s))
-        self._data = self._mj.MjData(self._model)
-        self._option = self._model.opt
-        self._fault = self._read_back(scene, dt_s)
+        self.xml = model_xml(scene, s, dt_s)
+        self.model = self._mj.MjModel.from_xml_string(self.xml)
+        self._data = self._mj.MjData(self.model)
+        self._fault = self._read_back(dt_s)
         if not all(body.at.at_rest for body in scene.bodies):
             self._data.qpos[:], self._data.qvel[:] = coordinates(scene, s)
         loops = scene.compiled and looping()
         holds = ContactState.blank() if loops else [ContactState.plain()]
-        self._held = holds[0]
-        begin_contact(self._held, scene, s, dt_s, self._model.npair)
-        self._arrays = arrays_of(self._model, self._data, self._held, scene)
+        self.held = holds[0]
+        begin_contact(self.held, scene, s, dt_s, self.model.npair)
+        self.arrays = self._arrays_of()
         self.drive: Driver | None = None
         if loops:
             from engines.mujoco.loop import drive, memory_of
 
-            self.drive = partial(drive, holds, self._arrays, memory_of(self._model, self._data))
+            self.drive = partial(drive, holds, self.arrays, memory_of(self.model, self._data))
         # the library would write its warnings to a file; they are counted and read from `fault`
         self._mj.set_mju_user_warning(_ignore)
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
-        data, held, arrays = self._data, self._held, self._arrays
+        data, held, arrays = self._data, self.held, self.arrays
         prepare(held, arrays, step)
-        self._option.timestep = step.dt_s
-        self._mj.mj_step(self._model, data)
+        self.model.opt.timestep = step.dt_s
+        self._mj.mj_step(self.model, data)
         notice(held, arrays, Forces(data.ncon, data.nefc, data.efc_R, data.efc_force), step)
 
     @property
     def base_x_m(self) -> float:
         """Where a base that moves is; see `engines.world.World`."""
-        return float(self._held.moved)
+        return float(self.held.moved)
 
     @property
     def lag_m(self) -> float | None:
         """How far a welded base was from where it should have been; see `engines.world.World`."""
-        return float(self._held.lag) if self._held.welded else None
+        return float(self.held.lag) if self.held.welded else None
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
-        read(self._held, self._arrays)
-        return self._arrays.state
+        read(self.held, self.arrays)
+        return self.arrays.state
 
     def fault(self) -> str:
         """Say which setting was not taken, or what the engine warned of."""
@@ -82,16 +347,16 @@ class MujocoWorld:
         if warned.size:
             kind = list(self._mj.mjtWarning.__members__)[warned[0]]
             return f"MuJoCo warned: {kind.removeprefix('mjWARN_')}"
-        return disagreement({"time": (self._held.time, self._data.time)})
+        return disagreement({"time": (self.held.time, self._data.time)})
 
     def close(self) -> None:
         """Give warnings back to the library."""
         self._mj.set_mju_user_warning(None)
 
-    def _read_back(self, scene: Scene, dt_s: float) -> str:
-        s, model = self._s, self._model
+    def _read_back(self, dt_s: float) -> str:
+        s, model, scene = self.settings, self.model, self._scene
         pairs: dict[str, tuple[Any, Any]] = {
-            "timestep": (LIBRARY_STEP_S, self._option.timestep),
+            "timestep": (LIBRARY_STEP_S, model.opt.timestep),
             "friction": (s.friction, model.geom_friction[-1, 0]),
         }
         for number, body in enumerate(scene.bodies, 1 + (scene.frame == "world")):
@@ -99,40 +364,87 @@ class MujocoWorld:
             found = model.body_inertia[number]
             pairs |= {f"inertia {number} {i}": (body.inertia[i], found[i]) for i in range(3)}
         pairs |= {name: self._read_option(name) for name in OPTIONS}
-        pairs["diagexact"] = (s.diagexact, self._exact)
-        impedance = impedance_of(scene, s, dt_s)
-        if impedance is not None:
-            pairs |= {
-                f"impedance {i}": (value, model.pair_solimp[0, i])
-                for i, value in enumerate(impedance)
-            }
+        exact = model.opt.enableflags & int(self._mj.mjtEnableBit.mjENBL_DIAGEXACT)
+        pairs["diagexact"] = (s.diagexact, bool(exact))
+        for i, value in enumerate(s.solimp(scene, dt_s)):
+            pairs[f"impedance {i}"] = (value, model.pair_solimp[0, i])
             pairs["friction of the pair"] = (s.friction, model.pair_friction[0, 0])
         return disagreement(pairs)
 
-    @property
-    def _exact(self) -> bool:
-        bit = getattr(self._mj.mjtEnableBit, "mjENBL_DIAGEXACT", 0)  # earlier releases have none
-        return bool(self._option.enableflags & int(bit))
-
     def _read_option(self, name: str) -> tuple[Any, Any]:
         """Return a wanted option as the library numbers it, and the option as it is."""
-        wanted, found = getattr(self._s, name), getattr(self._option, name)
-        if wanted is None or name not in KINDS:
+        wanted, found = getattr(self.settings, name), getattr(self.model.opt, name)
+        if wanted is None or not OPTIONS[name]:
             return wanted, found
         kind = getattr(self._mj, f"mjt{name.capitalize()}")
-        return int(kind.__members__[KINDS[name] + wanted.upper()]), int(found)
+        return int(kind.__members__[OPTIONS[name] + wanted.upper()]), int(found)
+
+    def _arrays_of(self) -> Arrays:
+        """Return the library's arrays, and what is known of each pair, in the library's order."""
+        held, model, data, scene = self.held, self.model, self._data, self._scene
+        rows, yields = [], (1.0 - held.impedance) * scene.system.gravity
+        for each in scene.layout.contacts if held.pairs else ():
+            weight = scene.layout.carried(each) * scene.system.gravity / held.corners
+            for side in (0.0,) if held.single else (1.0, -1.0):
+                row = (side, each.face * side, *each, weight, yields, 0.5 * yields)
+                rows += [row] * (1 if held.single else int(held.corners))
+        homes = np.array([(*body.home, 0.5 * body.height) for body in scene.bodies])
+        return Arrays(
+            data.qpos,
+            data.qvel,
+            model.opt.gravity,
+            model.pair_solref,
+            model.pair_solreffriction,
+            model.pair_margin,
+            model.geom_solref,
+            model.geom_surfacevel,
+            data.mocap_pos,
+            np.array(rows).reshape(-1, 8),
+            homes,
+            np.zeros((len(homes), len(Pose._fields))),
+        )
 
 
-def world_of(scene: Scene, settings: MujocoSettings, dt_s: float) -> MujocoWorld:
-    """Build a scene; a preset's impratio is kept to what the friction allows.
-
-    Parameters
-    ----------
-    scene : Scene
-    settings : MujocoSettings
-    dt_s : float, ordinary step [s], from which depths of the contact follow
-    """
-    return MujocoWorld(scene, kept(scene, settings), dt_s)
+def begin_contact(
+    held: ContactState, scene: Scene, s: MujocoSettings, dt_s: float, pairs: int
+) -> None:
+    """Fill what holds the bodies of a scene, of which so many pairs touch, in ordinary steps."""
+    block, touching = scene.system, len(scene.layout.contacts)
+    impedance = 1.0 if s.impedance is None else s.impedance[1]
+    sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
+    time_constant, ratio = s.solref or (0.0, 0.0)
+    fill(
+        held,
+        planar=s.planar,
+        moving=scene.frame == "world",
+        base_velocity=s.floor == "surfacevel",
+        welded=scene.frame == "world" and s.floor == "weld",
+        single=s.geometry != "corners",
+        stacked=scene.stacked,
+        by_phase=s.by_phase,
+        reflects=s.reflection,
+        preload=s.preload,
+        width=block.width,
+        height=0.5 * block.height,
+        form=SCALED if s.solref is not None else UNSET if s.damping is None else DIRECT,
+        time_constant=time_constant,
+        ratio=ratio,
+        damping=s.damping or 0.0,
+        sliding_damping=sliding,
+        sliding=sliding,
+        stiffness=s.stiffness or 0.0,
+        impedance=impedance,
+        carry=(s.carry or 0.0) * block.width,
+        touching=touching,
+        pairs=pairs,
+        corners=max(pairs // touching // 2, 1),
+        ordinary_squared=dt_s**2,
+        impedance_squared=impedance**2,
+        growth=1.0 + MOST_GROWTH * block.p * dt_s,
+        steady=1.0 + RELEASED_GROWTH * block.p * dt_s,
+        released=bool(scene.side),
+        rate=scene.bodies[0].at.rate,
+    )
 
 
 def looping() -> bool:
@@ -146,3 +458,69 @@ def looping() -> bool:
 
 def _ignore(message: str) -> None:
     """Take a warning without writing it anywhere."""
+
+
+MODEL = "block.xml"
+"""File of a script's model, beside it."""
+
+SAID = ("<option", "<geom", "<pair", "<weld")
+"""Elements of a model that a preset sets, the joints apart."""
+
+
+def stepped_xml(world: MujocoWorld, dt_s: float) -> str:
+    """Return the model of a world with what is set at equal steps dt_s [s], a line each."""
+    step = Step(dt_s, *7 * (0.0,), ContactPhase.SWING, 0.0)
+    world.held.dt = dt_s
+    set_reference(world.held, world.arrays, step)
+    root, arrays = ElementTree.fromstring(world.xml), world.arrays
+    for option in root.iter("option"):
+        option.set("timestep", repr(dt_s))
+    pairs, geoms = list(root.iter("pair")), list(root.iter("geom"))
+    if world.held.form != UNSET:
+        for pair, reference in zip(pairs, arrays.pair_reference.tolist(), strict=True):
+            pair.set("solref", _row(reference))
+    if world.held.form == DIRECT:
+        for pair, reference in zip(pairs, arrays.pair_friction.tolist(), strict=True):
+            pair.set("solreffriction", _row(reference))
+    if world.held.form == SCALED:
+        for geom, reference in zip(geoms, arrays.geom_reference.tolist(), strict=True):
+            geom.set("solref", _row(reference))
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
+    """Return a scene as a model of MuJoCo; see `engines.world.Script`."""
+    world = MujocoWorld(replace(scene, compiled=False), settings, dt_s)
+    s, model, welded = world.settings, stepped_xml(world, dt_s), world.held.welded
+    world.close()
+    build = [f'model = mujoco.MjModel.from_xml_path(str(HERE / "{MODEL}"))']
+    build.append("data = mujoco.MjData(model)")
+    if not all(body.at.at_rest for body in scene.bodies):
+        build += [f"data.qpos[:] = {coordinates(scene, s)[0]}"]
+        build += [f"data.qvel[:] = {coordinates(scene, s)[1]}"]
+    step = ["model.opt.gravity[:] = pull_x, 0.0, pull_z", "mujoco.mj_step(model, data)"]
+    if scene.frame == "world":
+        # a base without a body of its own is moved after the step
+        step.insert(0 if welded else 2, "data.mocap_pos[0, 0] = base_x")
+        if s.floor == "surfacevel":
+            step.insert(0, "model.geom_surfacevel[0, 0] = base_velocity")
+    pose: tuple[str, ...] = (
+        "theta = 2.0 * math.atan2(data.qpos[7 * number + 5], data.qpos[7 * number + 3])",
+        "rate = data.qvel[6 * number + 4]",
+    )
+    if s.planar:
+        pose = ("theta, rate = data.qpos[3 * number + 2], data.qvel[3 * number + 2]",)
+    # the joint of a welded base is the last, a free one
+    under = f" - {'data.qpos[-7]' if welded else 'base_x'}" * (scene.frame == "world")
+    lines = map(str.strip, model.splitlines())
+    return Script(
+        imports=("import mujoco",),
+        settings=tuple(dict.fromkeys(line for line in lines if line.startswith(SAID))),
+        build=tuple(build),
+        step=tuple(step),
+        pose=pose,
+        place=f"data.qpos[0]{under}",
+        moment=world.moment,
+        files={MODEL: model},
+    )

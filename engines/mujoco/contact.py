@@ -1,5 +1,20 @@
 """How MuJoCo's contact holds a block, step by step: set before a step, looked at after it.
 
+A contact holds its points to the acceleration -b v - k r, v being their velocity and r the gap; b
+and k are the two numbers of `solref`, negative. Four things are set with a step:
+
+- b dt and k dt^2 are kept, so that b and k go with the step;
+- *reflection*: the centripetal acceleration c of a pivot is in proportion to the square of the
+  angular velocity. A pivot that leaves with -c h/2 is back where it was at the end of a step h. It
+  comes into the next step with c h/2, or with c h if it was held and not returned before. Were that
+  taken out (b dt = 1), it would creep, an error of first order; it is given back (b dt = 1 + part),
+  so that its mean over a step is zero. Not through an impact, nor in the first step after it;
+- *margin*: a pivot rises by (theta' dt)^2 R/2 in a step, and would lose its contact: that of a
+  pivot acts from a gap on (`carry`), those of the others from the depth at which they carry the
+  weight, so that the free corner strikes when it touches, not before;
+- *preload*: within the margin a contact pulls by k times the gap. The pivot's k is chosen so that
+  this makes up for what the contact yields to its load (R f, of the last step).
+
 The functions read and write the library's own arrays; Python calls them, or a compiled loop does
 (`engines.mujoco.loop`). In all of them held is what is known of the block and of what holds it,
 arrays are the library's, step is the one that follows, or that was taken, and pair is the number of
@@ -7,27 +22,11 @@ a row of arrays.pairs.
 """
 
 import math
+from typing import NamedTuple
 
-from engines.mujoco.contact_state import (
-    BODY,
-    DIRECT,
-    FACE,
-    ON,
-    PIVOT,
-    RESISTED,
-    SCALED,
-    SIDE,
-    WEIGHT,
-    YIELDS,
-    Arrays,
-    ContactState,
-    Forces,
-)
-from engines.mujoco.model import direct_reference
-from engines.parts.compiled import shared
-from engines.parts.reflection import part_of, take_in
+from engines.parts.compiled import State, shared
 from engines.scene import LOWER
-from engines.world import ContactPhase, FloatArray, Pose, Step
+from engines.world import ContactPhase, FloatArray, Step
 
 FEEBLE = 1e-15
 """k dt^2 where positions are to be left alone; the library takes a zero for something else."""
@@ -35,55 +34,211 @@ FEEBLE = 1e-15
 LEAST_HELD = 1e-3
 """Part of what the whole weight would press a corner by, up to which landing holds one at rest."""
 
+MOST_REFLECTION = 25.0
+"""No more than this part of the velocity with which a contact comes into a step is returned: after
+a far shorter step that is noise."""
+
+MOST_GROWTH = 20.0
+"""Where the block hardly turns, by how much faster it will turn is noise: a contact's velocity is
+returned as if it grew by no more than this many p dt in a step."""
+
+RELEASED_GROWTH = 80.0
+"""A released block gains speed steadily, so that it is known from earlier on how fast: nothing is
+returned until it grows by no more than this many p dt in a step. Any later, and the time until then
+is one without return, an error of first order."""
+
+UNSET, SCALED, DIRECT = range(3)
+"""Forms of the contact's reference: the library's own, its time constant in steps, b and k."""
+
 FREE, WELDED = 7, 6
 """Coordinates of a free joint, and the solver's rows of a weld, which come before the contacts'."""
 
+SIDE, PIVOT, BODY, FACE, ON, WEIGHT, YIELDS, RESISTED = range(8)
+"""Columns of pairs.
 
-@shared
-def pose_of(held: ContactState, arrays: Arrays, body: int = 0) -> Pose:
-    """Return the pose of a body [m, rad, rad/s] relative to the base, by its number."""
-    q, v = arrays.position, arrays.velocity
-    if held.planar:
-        x, z = arrays.homes[body, 0], arrays.homes[body, 1]
-        i = 3 * body
-        return Pose(q[i] + x - held.moved, q[i + 1] + z - held.raised, q[i + 2], v[i + 2])
-    i, j = 7 * body, 6 * body
-    theta = 2.0 * math.atan2(q[i + 5], q[i + 3])
-    return Pose(q[i] - held.moved, q[i + 2] - held.raised, theta, v[j + 4])
++1 for corners at -x, -1 for those at +x, 0 for a single pair; about which side the body turns for
+it to be the pivot; whose corner it is, of which face, and on which body (a `Contact`); the weight
+[N] that it carries as a pivot; by how much [m/s2] it yields to that, and to what it carries at
+rest.
+"""
+
+
+class ContactState(State):
+    """What holds a block, and what was seen of it.
+
+    Attributes
+    ----------
+    planar, moving, base_velocity, welded : bool
+        Whether the block has three coordinates, whether the base moves, with a velocity, or as a
+        body of its own.
+    single, stacked : bool
+        Whether all corners of a contact share one pair, and whether bodies rest on others.
+    by_phase, reflects, preload : bool
+        What changes with the step.
+    width, height : float
+        Of a body that rocks, the half of the latter [m].
+    form : int
+        Of the contact's reference, one of `UNSET`, `SCALED`, `DIRECT`.
+    time_constant, ratio : float
+        The two numbers of `SCALED`, the first one over the step.
+    damping, sliding_damping, stiffness, impedance : float
+        Those of `DIRECT`, without units.
+    carry : float
+        Gap [m] within which the pivot stays in contact; 0 for no such thing.
+    touching, pairs, corners : int
+        Contacts of the layout, pairs that touch, and how many of them at each side of a contact.
+    ordinary_squared, impedance_squared : float
+        Squares of the ordinary step and of the impedance.
+    growth, steady : float
+        By how much what is returned may grow in a step, and where the block was released.
+    dt, time : float
+        Length and end of the last step [s].
+    sliding : float
+        Damping along the base in this step.
+    moved, raised, velocity, lag : float
+        Place [m] and velocity [m/s] of the base, its height above where it began, and how far [m] a
+        welded one was at most from where it should have been.
+    aloft, released : bool
+        Whether the last step was of a swing, and whether every step since a release was.
+    rate, gained, returned, last_dt : float
+        The last angular velocity [rad/s], and what it gained [rad/s2]; of the last step the part of
+        the pivot's velocity that was returned, and its length [s].
+    """
+
+    planar: bool
+    moving: bool
+    base_velocity: bool
+    welded: bool
+    single: bool
+    stacked: bool
+    by_phase: bool
+    reflects: bool
+    preload: bool
+    width: float
+    height: float
+    form: int
+    time_constant: float
+    ratio: float
+    damping: float
+    sliding_damping: float
+    stiffness: float
+    impedance: float
+    carry: float
+    touching: int
+    pairs: int
+    corners: int
+    ordinary_squared: float
+    impedance_squared: float
+    growth: float
+    steady: float
+    dt: float
+    time: float
+    sliding: float
+    moved: float
+    raised: float
+    velocity: float
+    lag: float
+    aloft: bool
+    released: bool
+    rate: float
+    gained: float
+    returned: float
+    last_dt: float
+
+
+class Arrays(NamedTuple):
+    """The library's arrays, and three of what it is asked about.
+
+    Attributes
+    ----------
+    position, velocity : ndarray (nq,), (nv,)
+        Of every joint, a welded base's last. A body in the plane has x, z [m] from its home, theta
+        [rad], and their rates; a free one x, y, z [m] and a quaternion, its real part first, and a
+        velocity [m/s] and angular velocity [rad/s].
+    gravity : ndarray (3,)
+        [m/s2].
+    pair_reference, pair_friction : ndarray (pairs, 2)
+        The reference along the normal, and along the base: minus a stiffness [1/s2] and minus a
+        damping [1/s], or a time constant [s] and a damping ratio.
+    pair_margin : ndarray (pairs,)
+        Gap [m] from which on a pair acts.
+    geom_reference : ndarray (geoms, 2)
+        The reference of shapes that touch without a pair.
+    surface_velocity : ndarray (geoms, 6)
+        Of each shape's surface [m/s, rad/s], first that of a base with one.
+    base_place : ndarray (bodies moved, 3)
+        Where bodies are [m] that are moved by their place.
+    pairs : ndarray (pairs, 8)
+        A row for each of the library's, columns `SIDE` to `RESISTED`.
+    homes : ndarray (bodies, 3)
+        Where the centre is at rest, along and above the base, and half of the height [m].
+    state : ndarray (bodies, 4)
+        The last one that was read, a `Pose` a row.
+    """
+
+    position: FloatArray
+    velocity: FloatArray
+    gravity: FloatArray
+    pair_reference: FloatArray
+    pair_friction: FloatArray
+    pair_margin: FloatArray
+    geom_reference: FloatArray
+    surface_velocity: FloatArray
+    base_place: FloatArray
+    pairs: FloatArray
+    homes: FloatArray
+    state: FloatArray
+
+
+class Forces(NamedTuple):
+    """What the solver says of a step.
+
+    contacts and rows say how many contacts there are, and rows of the solver: those of a weld
+    first, then as many for each contact; resistance and force (rows,) are R [1/kg] and f [N].
+    """
+
+    contacts: int
+    rows: int
+    resistance: FloatArray
+    force: FloatArray
 
 
 @shared
 def read(held: ContactState, arrays: Arrays) -> None:
-    """Read the state: write every body's `Pose` into a row of it.
-
-    Parameters
-    ----------
-    held : ContactState, of which the place of the base is used
-    arrays : Arrays, of which state (bodies, 4) is written
-    """
+    """Read the state: write every body's `Pose` into a row of it."""
+    q, v, state = arrays.position, arrays.velocity, arrays.state
     for body in range(len(arrays.homes)):
-        pose = pose_of(held, arrays, body)
-        arrays.state[body, 0], arrays.state[body, 1] = pose.x, pose.z
-        arrays.state[body, 2], arrays.state[body, 3] = pose.theta, pose.rate
+        if held.planar:
+            i = 3 * body
+            x, z = q[i] + arrays.homes[body, 0], q[i + 1] + arrays.homes[body, 1]
+            theta, rate = q[i + 2], v[i + 2]
+        else:
+            i = 7 * body
+            x, z, theta = q[i], q[i + 2], 2.0 * math.atan2(q[i + 5], q[i + 3])
+            rate = v[6 * body + 4]
+        state[body, 0], state[body, 1] = x - held.moved, z - held.raised
+        state[body, 2], state[body, 3] = theta, rate
 
 
 @shared
 def prepare(held: ContactState, arrays: Arrays, step: Step) -> None:
-    """Set what a step needs, but for its length.
+    """Set what a step needs, but for its length; `read` comes before.
 
-    Parameters
-    ----------
-    held : ContactState, updated
-    arrays : Arrays, written: gravity, references and margins of contacts, the column `RESISTED` of
-        pairs, place and velocity of a base that moves
-    step : Step, that follows
+    Written are gravity, references and margins of contacts, the column `RESISTED` of pairs, place
+    and velocity of a base that moves.
     """
-    if step.dt_s != held.dt or held.by_step:
+    if step.dt_s != held.dt or held.by_phase or held.reflects or held.carry != 0.0:
         held.dt = step.dt_s
         set_reference(held, arrays, step)
     arrays.gravity[0], arrays.gravity[2] = step.pull_x, step.pull_z
     if held.moving:
-        move_base(held, arrays, step)
+        # the contact turns the slip v- - V into (1 - b dt) times as much, so that a point which
+        # moved with the base before moves with the base after
+        if held.base_velocity:
+            arrays.surface_velocity[0, 0] = held.velocity + step.base_kick / held.sliding
+        held.velocity = step.base_velocity
+        # the place from which the base sets out; or where it goes
+        arrays.base_place[0, 0] = step.base_x if held.welded else held.moved
 
 
 @shared
@@ -95,17 +250,28 @@ def set_reference(held: ContactState, arrays: Arrays, step: Step) -> None:
         put_pair(arrays.geom_reference, held.time_constant * dt, held.ratio)
     if held.form != DIRECT:
         return
-    back = part_of(held.reflection, step) if held.reflects else 0.0
+    back = part_of(held, step) if held.reflects else 0.0
     firm = held.stiffness
     if held.by_phase and (step.side != 0.0 or step.phase != ContactPhase.REST):
         firm = FEEBLE
     held.sliding = held.sliding_damping + back
-    k, b = direct_reference(held.impedance, dt, firm, held.damping + back)
-    put_pair(arrays.pair_reference, k, b)
-    k, b = direct_reference(held.impedance, dt, firm, held.sliding)
-    put_pair(arrays.pair_friction, k, b)
-    if held.carry != 0.0:
+    put_direct(arrays.pair_reference, held, firm, held.damping + back)
+    put_direct(arrays.pair_friction, held, firm, held.sliding)
+    if held.carry != 0.0 and step.phase == ContactPhase.REST and step.side == 0.0:
+        hold_at_rest(held, arrays, step)
+    elif held.carry != 0.0:
         set_reach(held, arrays, step)
+
+
+@shared
+def put_direct(table: FloatArray, held: ContactState, stiffness: float, damping: float) -> None:
+    """Write k dt^2 and b dt as a pair's solref: minus a stiffness [1/s2] and minus a damping [1/s].
+
+    The library divides both by the impedance, the first one twice (MuJoCo's modeling.rst, "Solver
+    parameters").
+    """
+    unit = held.impedance / held.dt
+    put_pair(table, -stiffness * (unit * unit), -unit * damping)
 
 
 @shared
@@ -116,11 +282,33 @@ def put_pair(table: FloatArray, first: float, second: float) -> None:
 
 
 @shared
+def part_of(held: ContactState, step: Step) -> float:
+    """Return the part to give back of the velocity with which the pivot comes into a step."""
+    was_aloft = held.aloft
+    held.aloft = step.phase == ContactPhase.SWING or step.phase == ContactPhase.APPROACH
+    held.released = held.released and held.aloft
+    held.returned = part_returned(held, step) if was_aloft and held.aloft else 0.0
+    return held.returned
+
+
+@shared
+def part_returned(held: ContactState, step: Step) -> float:
+    """Return that part in a swing, after another step of one."""
+    if held.rate == 0.0:
+        return 0.0
+    faster = 1.0 + held.gained * step.kick_s / held.rate
+    growth = faster * faster
+    if held.released and growth > held.steady:
+        # what is returned too soon would stay in it
+        return 0.0
+    most = held.steady if held.released else held.growth
+    part = min(growth, most) * step.dt_s / held.last_dt
+    return min(part if held.returned != 0.0 else 0.5 * part, MOST_REFLECTION)
+
+
+@shared
 def set_reach(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Set from which gap [m] on each contact acts, and preload the one that carries the block."""
-    if step.phase == ContactPhase.REST and step.side == 0.0:
-        hold_at_rest(held, arrays, step)
-        return
     margin, pairs = arrays.pair_margin, arrays.pairs
     for i in range(held.pairs):
         # the free corner, about to lift, is still in reach where no weight presses it
@@ -132,7 +320,7 @@ def set_reach(held: ContactState, arrays: Arrays, step: Step) -> None:
             continue
         if held.single:
             # all corners of a box share one pair, and the free one must not touch early
-            theta = pose_of(held, arrays, int(pairs[i, BODY])).theta
+            theta = arrays.state[int(pairs[i, BODY]), 2]
             margin[i] = max(sag, min(held.carry, 0.5 * held.width * abs(theta)))
         elif pairs[i, PIVOT] == step.side:
             hold_pivot(held, arrays, step, i)
@@ -168,56 +356,37 @@ def hold_at_rest(held: ContactState, arrays: Arrays, step: Step) -> None:
 @shared
 def gap_of(held: ContactState, arrays: Arrays, pair: int) -> float:
     """Return the gap [m] between a corner and what it touches, both about upright."""
-    row = arrays.pairs[pair]
-    pose = pose_of(held, arrays, int(row[BODY]))
-    raised = 0.5 * held.width * math.sin(pose.theta)
+    row, state = arrays.pairs[pair], arrays.state
+    z, theta = state[int(row[BODY]), 1], state[int(row[BODY]), 2]
+    raised = 0.5 * held.width * math.sin(theta)
     if row[FACE] == LOWER:
-        level = pose.z - held.height * math.cos(pose.theta)
+        level = z - held.height * math.cos(theta)
         return level + row[SIDE] * raised
     on = int(row[ON])
-    under = pose_of(held, arrays, on).z - arrays.homes[on, 2]
-    return under - (pose.z + held.height * math.cos(pose.theta) + row[SIDE] * raised)
-
-
-@shared
-def move_base(held: ContactState, arrays: Arrays, step: Step) -> None:
-    """Set the place from which the base sets out, and its surface velocity; or where it goes."""
-    before, held.velocity = held.velocity, step.base_velocity
-    # the contact turns the slip v- - V into (1 - b dt) times as much, so that a point which
-    # moved with the base before moves with the base after
-    if held.base_velocity:
-        arrays.surface_velocity[0, 0] = before + step.base_kick / held.sliding
-    arrays.base_place[0, 0] = step.base_x if held.welded else held.moved
+    under = state[on, 1] - arrays.homes[on, 2]
+    return under - (z + held.height * math.cos(theta) + row[SIDE] * raised)
 
 
 @shared
 def notice(held: ContactState, arrays: Arrays, forces: Forces, step: Step) -> None:
     """Note what a step has done, for the next one.
 
-    Parameters
-    ----------
-    held : ContactState, updated: the time, the place of the base, how fast the block turns
-    arrays : Arrays, of which the columns `YIELDS` and `RESISTED` of pairs are written [m/s2]
-    forces : Forces, of that step
-    step : Step, that was taken
+    Of arrays the columns `YIELDS` and `RESISTED` of pairs are written [m/s2].
     """
     held.moved = step.base_x if held.moving else 0.0
     if held.welded:
-        look_at_base(held, arrays, step)
+        # the joint of the base is the last
+        at = len(arrays.position) - FREE
+        held.moved = arrays.position[at]
+        held.raised = arrays.position[at + 2] - arrays.base_place[0, 2]
+        held.lag = max(held.lag, abs(held.moved - step.base_x))
     held.time += step.dt_s
-    if held.carry != 0.0:
+    if held.carry != 0.0 and forces.contacts > 0:
         look_at_yield(held, arrays, forces, step)
     if held.reflects:
-        take_in(held.reflection, step, pose_of(held, arrays).rate)
-
-
-@shared
-def look_at_base(held: ContactState, arrays: Arrays, step: Step) -> None:
-    """Note where a welded base is [m], whose joint is the last, and how far off."""
-    at = len(arrays.position) - FREE
-    held.moved = arrays.position[at]
-    held.raised = arrays.position[at + 2] - arrays.base_place[0, 2]
-    held.lag = max(held.lag, abs(held.moved - step.base_x))
+        rate = arrays.velocity[2 if held.planar else 4]
+        held.gained = (rate - held.rate) / step.kick_s
+        held.rate, held.last_dt = rate, step.dt_s
 
 
 @shared
@@ -228,8 +397,6 @@ def look_at_yield(held: ContactState, arrays: Arrays, forces: Forces, step: Step
     first of those between two bodies speaks for all.
     """
     pairs, count, weld = arrays.pairs, forces.contacts, WELDED if held.welded else 0
-    if count == 0:
-        return
     stride, each = (forces.rows - weld) // count, held.pairs // held.touching
     whole, pivots = count == held.pairs, count == held.touching * held.corners
     if step.phase == ContactPhase.REST and (whole or not held.stacked):

@@ -16,8 +16,7 @@ import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
-from engines.mujoco.contact import notice, prepare, read
-from engines.mujoco.contact_state import Arrays, ContactState, Forces
+from engines.mujoco.contact import Arrays, ContactState, Forces, notice, prepare, read
 from engines.parts.compiled import kernel, shared
 from engines.run.look import Lists, Run, onward, undecided
 from engines.world import FloatArray

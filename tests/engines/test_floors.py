@@ -7,7 +7,7 @@ import pytest
 from uses import BLOCK, HERE, SHAKEN, agreed, pulse, rocked, scene
 
 from analytic.response import Outcome
-from engines.mujoco import model
+from engines.mujoco import build as mujoco
 from engines.pybullet import NAIVE
 from engines.pybullet import build as bullet
 from engines.run.run import LAG, build
@@ -59,7 +59,7 @@ FLOORS = {
     # but a force below the weight of both lets them fall: engines/troubles
     "pybullet": (bullet, {"FLOOR_MASSES": (1000.0, 10.0), "FLOOR_G": (2.0,)}, 2e-3),
     # until it is so large that the solver takes what is left of the block's forces for nothing
-    "mujoco": (model, {"FLOOR_MASSES": (1e2, 1e4)}, 3e-3),
+    "mujoco": (mujoco, {"FLOOR_MASSES": (1e2, 1e4)}, 3e-3),
 }
 """Engine -> what a floor is made of, other values of it, and by what part they move the peak."""
 
@@ -101,7 +101,7 @@ def test_what_naive_pybullet_does_not_set_is_the_library_s_own():
 def test_what_naive_mujoco_does_not_set_is_the_library_s_own():
     mj = pytest.importorskip("mujoco")
     world = build(HERE["mujoco"].use(scene(preset="naive")))
-    bare, read = mj.MjModel.from_xml_string(BARE), world._model
+    bare, read = mj.MjModel.from_xml_string(BARE), world.model
     for name in dir(bare.opt):
         found = getattr(read.opt, name)
         if not name.startswith("_") and not callable(found):

@@ -11,8 +11,7 @@ from uses import BLOCK, HERE, agreed, rocked, scene
 from analytic import RockingFrame, SinePulse, SlidingBlock, Still
 from analytic.response import Outcome, Reason
 from engines.declaration import Stepping
-from engines.mujoco.settings import STACKED, TUNED
-from engines.mujoco.stacks import softened
+from engines.mujoco import STACKED, TUNED
 from engines.run.run import simulate_world
 from engines.scene import BASE, LOWER, UPPER, Scene, layout_of
 from engines.world import Moment, Pose
@@ -187,14 +186,14 @@ def test_columns_keep_to_their_beam_in_mujoco(hard):
 def test_a_soft_surface_is_in_proportion_to_what_lifts_a_pivot(aspect):
     system = RockingFrame(width=0.5, height=0.5 * aspect, columns=3, load=2.0)
     posed, s = Scene(system=system, motion=QUICK), replace(TUNED, **STACKED)
-    surface, whole, *_ = softened(posed, s).impedance
-    depth = STACKED["soft_surface"] / (1.0 + aspect**2)
-    assert softened(posed, s).soft_surface == pytest.approx(depth, rel=1e-12)
+    found, depth = s.fitted(posed), STACKED["soft_surface"] / (1.0 + aspect**2)
+    surface, whole, *_ = found.impedance
+    assert found.soft_surface == pytest.approx(depth, rel=1e-12)
     assert (1.0 - surface) / surface == pytest.approx(depth, rel=1e-12)
     assert whole == TUNED.impedance[1]
     firm = replace(s, impedance=(0.1, *TUNED.impedance[1:]))
-    assert softened(posed, firm).impedance[0] == 0.1
-    assert softened(posed, TUNED) is TUNED
+    assert firm.fitted(posed).impedance[0] == 0.1
+    assert TUNED.fitted(posed) == TUNED
 
 
 def test_a_frame_is_columns_that_share_their_beam():

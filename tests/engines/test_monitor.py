@@ -158,16 +158,6 @@ def test_a_client_that_was_used_is_as_good_as_new(monkeypatch):
     assert bullet.idle
 
 
-@pytest.mark.skipif("mujoco" not in HERE, reason="MuJoCo is not installed")
-def test_a_release_that_knows_no_moving_surface_answers_alike(monkeypatch):
-    """Before 3.11 `MjModel` has no `geom_surfacevel`; only a base that moves needs it."""
-    library = pytest.importorskip("mujoco")
-
-    newest = all_but_times(rocked("mujoco", compiled=False))
-    monkeypatch.delattr(library.MjModel, "geom_surfacevel")
-    assert all_but_times(rocked("mujoco", compiled=False)) == newest
-
-
 @pytest.mark.parametrize(("steps", "asked"), [(10**9, [True]), (10, [True, False])])
 def test_a_run_of_many_steps_is_compiled(steps, asked, monkeypatch):
     """It begins again when the steps that may be interpreted are spent."""

@@ -10,7 +10,8 @@ from declared import run
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, installed_engines
 from engines.declaration import BEST, LEFT_OUT, OWN_STEPS, Stepping
-from engines.mujoco.settings import TUNED, MujocoSettings
+from engines.mujoco import TUNED
+from engines.mujoco.build import MujocoSettings
 from engines.pybullet.build import BulletSettings, BulletWorld
 from engines.run.look import Monitor
 from engines.run.run import build
@@ -110,8 +111,8 @@ def test_solref_and_margin_reach_the_library():
     monitor = Monitor(asked, dt_s, Stepping.FIXED)
     monitor.make_room(1)
     world.step(monitor.next(world.state()))
-    assert np.all(world._model.pair_solref == [2.0 * dt_s, 1.0])
-    assert world._model.pair_margin == pytest.approx(1e-3 * CASE.block.width)
+    assert np.all(world.model.pair_solref == [2.0 * dt_s, 1.0])
+    assert world.model.pair_margin == pytest.approx(1e-3 * CASE.block.width)
     world.close()
 
 
