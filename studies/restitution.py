@@ -161,19 +161,15 @@ def strike(job: Job) -> tuple[tuple[float, float, float], str]:
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return the strikes, and for each way how far off the corner's speed and the rate are."""
+    """Return the strikes, and for each way how far off the corner's speed is."""
     struck = rows.drop(columns=["source", "outcome", "message"])
-    return {
-        "restitution": struck,
-        "corners": deviations(struck, "corner_ratio", "wanted"),
-        "rates": deviations(struck, "rate_ratio", "kept_ratio"),
-    }
+    return {"restitution": struck, "corners": deviations(struck)}
 
 
-def deviations(rows: pd.DataFrame, found: str, right: str) -> pd.DataFrame:
-    """Return a line for each engine and way: how far one column is from another at most."""
+def deviations(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a line for each engine and way: how far a corner is off its coefficient at most."""
     kept = rows["corner_ratio"] < 10.0  # else the corner was thrown, or the library went wrong
-    off = (rows[found] - rows[right]).abs().where(kept, math.inf)
+    off = (rows["corner_ratio"] - rows["wanted"]).abs().where(kept, math.inf)
     rows = rows.assign(off=off, slide=rows["slide_ratio"].abs())
     table = []
     for (engine, way), group in rows.groupby(["engine", "way"], sort=False):
@@ -190,17 +186,11 @@ def deviations(rows: pd.DataFrame, found: str, right: str) -> pd.DataFrame:
     return pd.DataFrame(table)
 
 
-def best_ways(corners: pd.DataFrame) -> pd.DataFrame:
-    """Return the line of the way in which each engine is off least, whatever is varied."""
-    ordered = corners.sort_values(["off_over_all", "off"], kind="stable")
-    return ordered.drop_duplicates("engine").sort_index()
-
-
 def finding(tables: Tables) -> str:
     """Say how many engines miss a coefficient that is set plainly, and how well all keep it."""
     corners = tables["corners"]
-    plain = corners.drop_duplicates("engine")
-    within = f"within {best_ways(corners)['off_over_all'].max():.2g}"
+    plain, best = (corners.drop_duplicates("engine", keep=end) for end in ("first", "last"))
+    within = f"within {best['off_over_all'].max():.2g}"
     if len(plain) == 1:
         title = ENGINES[plain["engine"].iloc[0]].title
         return f"{title} keeps a coefficient of restitution {within} with its best settings."
@@ -221,21 +211,15 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         "Largest difference of the corner's speed, after over before, from the coefficient; its "
         "speed along the base; strikes that broke": corners.filter(regex=f"{off}|broken|slide"),
         f"What is set for {SHOWN:g}; DT is the step [s]": corners[["engine", "way", "literal"]],
-        "Largest difference of the block's angular rate, after over before, from 1 - 3/2 (1 + e) "
-        "sin^2(alpha)": tables["rates"].filter(regex=off),
         "Without a coefficient": pd.DataFrame(list(WITHOUT.items()), columns=["engine", "instead"]),
     }
 
 
 def figures(tables: Tables) -> Mapping[str, Figure]:
-    """Draw the largest deviations, and the strikes of each engine's plainest and best ways."""
-    from studies.drawing.restitution import draw_deviations, draw_strikes
+    """Draw the strikes of each engine's plainest and best way."""
+    from studies.drawing.restitution import draw_strikes
 
-    corners, rates = tables["corners"], tables["rates"]
-    return {
-        "corners": draw_deviations(corners, rates),
-        "strikes": draw_strikes(tables["restitution"], corners, best_ways(corners)),
-    }
+    return {"strikes": draw_strikes(tables["restitution"], tables["corners"])}
 
 
 STUDY = Study(
@@ -245,7 +229,7 @@ STUDY = Study(
 
 For coefficients from 0 to 1, wherever in a step the impact falls, and at another step, rate, height
 or slenderness; and what the block keeps of its angular rate. Half a minute. Writes restitution.csv,
-corners.csv, rates.csv, findings.txt and two pictures.""",
+corners.csv, findings.txt and a picture.""",
     options=Options,
     jobs=jobs,
     measure=measure,
@@ -255,9 +239,6 @@ corners.csv, rates.csv, findings.txt and two pictures.""",
     figures=figures,
     texts=("way", "varied", "literal"),
     captions={
-        "corners": "How far the speed of a corner that strikes the base, after over before, is at "
-        "most from the coefficient that was asked for, and the block's angular rate from the one "
-        'that follows; a row for each way to ask, where "and" adds to the one before.',
         "strikes": "Speed of the striking corner over the coefficient that was asked for, in each "
         "engine's plainest and best way, this one with a band for all that was varied.",
     },

@@ -1,4 +1,6 @@
-"""Ways to ask an engine for a coefficient of restitution e: settings beside the best contact's.
+"""The plainest and the best way to ask an engine for a coefficient of restitution e.
+
+Each is settings beside the best contact's.
 
 MuJoCo has none: its contact is a spring with a damper, which may push but not pull, and lets go
 when its force is zero (Schwager and Poeschel, Granular Matter 9, 2007).
@@ -55,10 +57,6 @@ def damping_ratio(e: float) -> float:
     return high
 
 
-def _damped(e: float, dt_s: float) -> Settings:
-    return {**SOFT, "solref": (SOFT_S / dt_s, max(damping_ratio(e), FEEBLE))}
-
-
 def _over(steps: int) -> Way:
     """Return the way by a spring that, were it not damped, would push for so many steps."""
 
@@ -74,17 +72,12 @@ def _over(steps: int) -> Way:
 
 
 PYBULLET = "changeDynamics(block, -1, restitution={e:g})"
-ON_BOTH = f"changeDynamics(base, -1, restitution=1), {PYBULLET}"
-FAST = f"{ON_BOTH}, setPhysicsEngineParameter(restitutionVelocityThreshold=0"
-TOUCHING = f"{FAST}, contactBreakingThreshold=1e-09"
-TOUCHES = {"restitution_threshold": 0.0, "breaking_threshold": 1e-9}
 PYMUNK = "shape.elasticity = {e:g} of the block's shapes"
 BOX2D = "restitution={e:g} of the block's fixtures"
-DART = "setRestitutionCoeff({e:g}) on the block, "
+DART = "setRestitutionCoeff({e:g}) on the block"
 RAPIER = "Collider.restitution({e:g}) of "
 NEWTON = "ShapeConfig.restitution = {e:g}"
 PHYSX = "PhysxMaterial(1.3, 1.3, {e:g}) of block and base"
-FASTER = f"{PHYSX}, set_scene_config(bounce_threshold=1e-09"
 ALONE = {"base_restitution": 0.0}
 
 WAYS: dict[str, dict[str, Way]] = {
@@ -92,17 +85,15 @@ WAYS: dict[str, dict[str, Way]] = {
     # touches, and gives back of that; a depth that is corrected adds to the speed
     "pybullet": {
         "e on the block alone": Way(PYBULLET, ALONE),
-        "e on the block, 1 on the base": Way(ON_BOTH, {}),
-        "and at all speeds": Way(f"{FAST})", {"restitution_threshold": 0.0}),
-        "and where they touch alone": Way(f"{TOUCHING})", TOUCHES),
-        "and no depth is corrected": Way(
-            f"{TOUCHING}, contactERP=0)", {**TOUCHES, "contact_erp": 0.0}
+        "1 on the base, no thresholds, no depth corrected": Way(
+            f"changeDynamics(base, -1, restitution=1), {PYBULLET}, "
+            "setPhysicsEngineParameter(restitutionVelocityThreshold=0, "
+            "contactBreakingThreshold=1e-09, contactERP=0)",
+            {"restitution_threshold": 0.0, "breaking_threshold": 1e-9, "contact_erp": 0.0},
         ),
     },
     "mujoco": {
         "the library's solref, whatever e": Way(f'solref="{SOFT_S} 1"', lambda *_: SOFT),
-        "the damping ratio for e alone": Way(f'solref="{SOFT_S} {{solref[1]!r}}"', _damped),
-        "spring and damper over 5 steps": _over(5),
         "spring and damper over 20 steps": _over(20),
     },
     # the product of two shapes' elasticities counts, which are 0 unless they are set
@@ -118,12 +109,10 @@ WAYS: dict[str, dict[str, Way]] = {
     # the product counts; what comes in at less than 0.1 units of length a second does not bounce,
     # and nothing comes off at more than 100
     "dart": {
-        "e on the block alone": Way(f"{DART}0 on the base", {**ALONE, "unit": 1.0}),
-        "e on the block, 1 on the base, in metres": Way(f"{DART}1 on the base", {"unit": 1.0}),
-        "and in tenths of a metre": Way(
-            f"{DART}1 on the base, 10 units to the metre", {"unit": 10.0}
+        "e on the block alone": Way(f"{DART}, 0 on the base", {**ALONE, "unit": 1.0}),
+        "1 on the base, in tenths of a metre": Way(
+            f"{DART}, 1 on the base, 10 units to the metre", {"unit": 10.0}
         ),
-        "and in the preset's unit": Way(f"{DART}1 on the base, 100000 units to the metre", {}),
     },
     # the mean of two colliders' coefficients counts, which are 0 unless they are set; a bounce is
     # an impulse along the normal alone, after that of friction: a corner that bounces slides
@@ -135,7 +124,7 @@ WAYS: dict[str, dict[str, Way]] = {
     # mean, where it is told to heed them
     "newton": {
         "e on both": Way(f"{NEWTON} of block and base", {}),
-        "and by XPBD": Way(
+        "e on both, by XPBD": Way(
             f"{NEWTON}, SolverXPBD(model, enable_restitution=True)",
             {"solver": "xpbd", "baumgarte": None, "iterations": 20},
         ),
@@ -144,12 +133,13 @@ WAYS: dict[str, dict[str, Way]] = {
     # bounce
     "physx": {
         "e on both": Way(PHYSX, {}),
-        "and at all speeds": Way(f"{FASTER})", {"bounce_threshold": 1e-9}),
-        "and by TGS": Way(f"{FASTER}, enable_tgs=True)", {"bounce_threshold": 1e-9, "tgs": True}),
+        "at all speeds, by TGS": Way(
+            f"{PHYSX}, set_scene_config(bounce_threshold=1e-09, enable_tgs=True)",
+            {"bounce_threshold": 1e-9, "tgs": True},
+        ),
     },
 }
-"""Name of an engine -> ways to ask it where it was tried, the plainest first; "and" adds to that
-before."""
+"""Name of an engine -> the plainest way to ask it, and the best of those that were tried."""
 
 WITHOUT = {
     "drake": "its contact yields and dissipates, by Hunt and Crossley's law or a relaxation time; "

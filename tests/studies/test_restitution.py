@@ -1,7 +1,6 @@
 """A block that strikes with a corner: what comes out of a coefficient of restitution."""
 
 import math
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -13,11 +12,10 @@ from scipy.integrate import solve_ivp
 from analytic.response import Response
 from engines import ENGINES
 from studies import restitution
-from studies.cases.ways import SOFT_S, WAYS, damping_ratio, given_back
+from studies.cases.ways import WAYS, damping_ratio, given_back
 from studies.contact import newton_e
 from studies.measures.published import PUBLISHED
 from studies.restitution import STUDY, job_of, measure
-from studies.sources.registry import scene_of
 
 QUICK = {"rate_over_alpha_p": 2.0, "p_dt": 1e-4}
 """An impact in which the weight matters little."""
@@ -48,7 +46,7 @@ def test_a_spring_that_only_pushes_gives_back_what_its_equation_says(ratio):
 @pytest.mark.parametrize("wanted", [0.0, 0.3, 1.0])
 def test_what_a_block_keeps_is_what_impulses_on_its_corner_leave(aspect, wanted):
     """The closed form, against two impulses that are solved for."""
-    asked = job_of("mujoco", "spring and damper over 5 steps", wanted, aspect=aspect)
+    asked = job_of("mujoco", "spring and damper over 20 steps", wanted, aspect=aspect)
     row = measure(replace(asked, lost=Response.failure("it ended")))
     half_width, half_height = 0.5 / aspect, 0.5
     radius_2 = (half_width**2 + half_height**2) / 3.0
@@ -69,10 +67,10 @@ def test_what_a_block_keeps_is_what_impulses_on_its_corner_leave(aspect, wanted)
 @pytest.mark.parametrize(
     ("engine", "way"),
     [
-        ("pybullet", "and no depth is corrected"),
+        ("pybullet", "1 on the base, no thresholds, no depth corrected"),
         ("pymunk", "e on the block, 1 on the base"),
         ("box2d", "e on the block, in the preset's units"),
-        ("dart", "and in tenths of a metre"),
+        ("dart", "1 on the base, in tenths of a metre"),
         ("mujoco", "spring and damper over 20 steps"),
     ],
 )
@@ -88,11 +86,11 @@ def test_a_block_keeps_what_its_corner_gives_back(engine, way, wanted):
     ("engine", "way", "wanted", "given"),
     [
         ("mujoco", "the library's solref, whatever e", 0.4, 0.0),
-        ("pybullet", "and at all speeds", 0.8, 0.0),
+        ("pybullet", "e on the block alone", 0.8, 0.0),
         ("pymunk", "e on the block alone", 1.0, 0.0),  # a product with 0
         ("rapier", "e on the block alone", 1.0, 0.5),  # a mean with 0
         ("physx", "e on both", 0.6, 0.0),  # below its threshold of 2 m/s
-        ("physx", "and at all speeds", 0.6, 0.6),
+        ("physx", "at all speeds, by TGS", 0.6, 0.6),
     ],
 )
 def test_a_way_gives_back_what_its_library_makes_of_it(engine, way, wanted, given):
@@ -101,26 +99,9 @@ def test_a_way_gives_back_what_its_library_makes_of_it(engine, way, wanted, give
 
 def test_a_library_that_says_it_went_wrong_leaves_no_number(monkeypatch):
     monkeypatch.setattr("engines.mujoco.build.MujocoWorld.fault", lambda _: "it went wrong")
-    row = struck("mujoco", "spring and damper over 5 steps", 0.4)
+    row = struck("mujoco", "spring and damper over 20 steps", 0.4)
     assert math.isnan(row["rate_ratio"]) and row["message"] == "it went wrong"
     assert row["outcome"] != "failed"  # it is known, and is not asked again
-
-
-@pytest.mark.parametrize("way", WAYS["mujoco"])
-def test_the_attributes_that_are_quoted_are_those_of_the_model_that_is_run(way):
-    job, engine = job_of("mujoco", way, 0.6), ENGINES["mujoco"]
-    scene = scene_of(job.case.system, job.case.motion, "fixed", **job.settings)
-    step_s = scene.step / job.case.system.p
-    model = "\n".join(
-        engine.script(scene, scene.choose(engine.preset("fixed").settings), step_s).settings
-    )
-    said = re.search(r'solref="(\S+) (\S+)"', WAYS["mujoco"][way].literal(0.6))
-    run = re.search(r'solref="(\S+) (\S+)"', model)
-    numbers = [eval(number, {"DT": step_s}) for number in said.groups()]
-    if run is None:
-        assert numbers == [SOFT_S, 1.0]  # what the library does by itself
-    else:
-        assert numbers == pytest.approx([float(each) for each in run.groups()], rel=3e-4)
 
 
 def test_a_line_holds_the_largest_deviations_and_counts_what_broke():
@@ -138,9 +119,7 @@ def test_a_line_holds_the_largest_deviations_and_counts_what_broke():
     assert (plain["slide"], plain["broken"]) == (0.2, 0)
     assert other["off"] == pytest.approx(0.05)
     assert (other["off_p_dt"], other["off_aspect"], other["broken"]) == (math.inf, math.inf, 2)
-    assert tables["rates"]["off"].tolist() == [0.0, 0.0]
-    assert restitution.best_ways(tables["corners"])["way"].tolist() == ["e on the block alone"]
-    assert "0.5" in restitution.finding(tables)
+    assert "pymunk keeps" in restitution.finding(tables)
 
 
 def test_the_published_lines_follow_from_the_published_strikes():
@@ -149,7 +128,11 @@ def test_the_published_lines_follow_from_the_published_strikes():
     again = restitution.tabulate(strikes.assign(source="", outcome="", message=""))
     for name, table in again.items():
         pd.testing.assert_frame_equal(table, tables[name], check_dtype=False, rtol=1e-12)
-    best = restitution.best_ways(tables["corners"])["off_over_all"]
+    plain, best = (
+        tables["corners"].drop_duplicates("engine", keep=end)["off_over_all"].to_numpy()
+        for end in ("first", "last")
+    )
+    assert (best < plain).all()  # the second way is the better one
     for part in ("7 of 8", f"{best.max():.2g}"):
         assert part in restitution.finding(tables)
 
@@ -159,9 +142,6 @@ def test_the_published_lines_follow_from_the_published_strikes():
     [
         (["--engines", "moreau"], ["moreau", "pybullet, mujoco"]),
         (["--engines", "drake"], ["drake", "no coefficient"]),
-        (["--engines", "pymunc"], ["pymunc", "pymunk"]),
-        (["--engines"], ["--engines"]),
-        (["--jobs", "0"], ["--jobs"]),
         (["--quick"], ["--quick"]),
     ],
 )
