@@ -12,7 +12,7 @@ from analytic.motion import SinePulse
 from analytic.response import Outcome
 from engines.declaration import UNTUNED
 from studies.cases.paper import free_rocking_window
-from studies.sources.registry import Source, resolve
+from studies.sources.registry import resolve
 
 SPRINGS: Mapping[str, Callable[[float, float], Mapping[str, float]]] = {
     "mujoco": lambda time, step: {
@@ -28,32 +28,20 @@ SPRINGS: Mapping[str, Callable[[float, float], Mapping[str, float]]] = {
 
 WITH_A_TIME = {("mujoco", preset) for preset in UNTUNED}
 """Engines and presets whose contact has a time of its own."""
-
 MOST_FRICTION = {"pybullet": 10.0}
 """Engine -> the largest coefficient of friction that it takes, where that is bounded."""
-
 EDGE = 1e-6
 """Relative distance of an amplitude from the onset, or from the overturning boundary."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Extreme:
-    """A block, a pulse and what is extreme about them.
+    """A block, a pulse and what is extreme about them; None stands for a preset's own value.
 
-    Attributes
-    ----------
-    onsets : float
-        Amplitude of the pulse over the acceleration g B/H that lifts the block.
-    restitution : float or None
-        Velocity ratio of impacts; None for Housner's. An engine's impact is its own: cases with
-        another ratio are not asked of engines.
-    rest_s : float
-        Least time [s] of observation after the pulse.
-    density, friction, step_s : float or None
-        [kg/m3]; and with None for a preset's own, the coefficient and the step [s].
-    contact : float or None
-        Time T of an engine's contact, in units of 1/p: a contact that holds the block's mass by a
-        spring of m/T^2 with critical damping. None for a preset's own.
+    The amplitude counts in `onsets`, g B/H, and after the pulse all is watched for `rest_s` at
+    least. A restitution is the velocity ratio of impacts; an engine's impact is its own, so cases
+    with one are not asked of engines. `contact`, in units of 1/p, is the time T of a contact that
+    holds the block's mass by a spring of m/T^2 with critical damping; a density is in kg/m3.
     """
 
     name: str
@@ -94,47 +82,31 @@ class Extreme:
     def applies(self, source: str) -> bool:
         """Say whether the source has what is extreme here."""
         asked = resolve(source)
-        engine = asked.kind == "engine"
-        if self.density != 1000.0 or self.friction is not None or self.contact is not None:
-            return engine and (self.contact is None or takes_spring(asked))
+        if self.contact is not None:
+            own_time = (asked.engine, asked.preset) in WITH_A_TIME
+            return asked.engine in SPRINGS and not own_time
+        if self.density != 1000.0 or self.friction is not None:
+            return asked.kind == "engine"
         if self.step_s is not None:
             return asked.stepping
-        return not engine or self.restitution is None
+        return asked.kind != "engine" or self.restitution is None
 
     def options(self, source: str) -> dict[str, Any]:
         """Return the options with which a source meets the case."""
-        asked, options = resolve(source), dict[str, Any]()
+        asked, found = resolve(source), dict[str, Any]()
         if self.step_s is not None:
-            options["step"] = self.step_s * self.block.p
-        if asked.kind != "engine":
-            return options
+            found["step"] = self.step_s * self.block.p
         if self.density != 1000.0:
-            options["density"] = self.density
+            found["density"] = self.density
         if self.friction is not None:
-            options["friction"] = min(self.friction, MOST_FRICTION.get(asked.engine, math.inf))
+            found["friction"] = min(self.friction, MOST_FRICTION.get(asked.engine, math.inf))
         if self.contact is not None:
             step = asked.used.ordinary_step()
-            options["settings"] = contact_settings(source, self.contact, step)
-        return options
+            found["settings"] = SPRINGS[asked.engine](self.contact, step)
+        return found
 
 
-def takes_spring(source: Source) -> bool:
-    """Say whether an engine's contact can be given a time of its own; some have one already."""
-    return source.engine in SPRINGS and (source.engine, source.preset) not in WITH_A_TIME
-
-
-def contact_settings(source: str, time: float, step: float) -> Mapping[str, float]:
-    """Return an engine's settings of a contact with a time of its own; both times are over 1/p.
-
-    ValueError if the engine has no such contact.
-    """
-    spring = SPRINGS.get(resolve(source).engine)
-    if spring is None:
-        raise ValueError(f"{source} has no contact with a time of its own")
-    return spring(time, step)
-
-
-def overturning(case: Extreme, surviving: float, overturned: float) -> float:
+def _boundary(case: Extreme, surviving: float, overturned: float) -> float:
     """Return the amplitude [onsets] at which the exact solution begins to overturn.
 
     By bisection to the last digit but three, from one that is survived and one that is not.
@@ -142,10 +114,8 @@ def overturning(case: Extreme, surviving: float, overturned: float) -> float:
     while overturned - surviving > 1e-13 * surviving:
         middle = 0.5 * (surviving + overturned)
         tried = replace(case, onsets=middle)
-        if simulate(tried.block, tried.motion).outcome is Outcome.OVERTURNED:
-            overturned = middle
-        else:
-            surviving = middle
+        falls = simulate(tried.block, tried.motion).outcome is Outcome.OVERTURNED
+        surviving, overturned = (surviving, middle) if falls else (middle, overturned)
     return surviving
 
 
@@ -163,7 +133,7 @@ def extremes(quick: bool) -> tuple[Extreme, ...]:
     half = Extreme(name="boundary", group="amplitude", half_cycles=1)
     full = replace(half, name="boundary after impact", half_cycles=2)
     # the largest rotation that survives lies before the first impact, and after it
-    edges = ((half, overturning(half, 1.0, 5.0)), (full, overturning(full, 1.0, 1.5)))
+    edges = ((half, _boundary(half, 1.0, 5.0)), (full, _boundary(full, 1.0, 1.5)))
     pulse = Extreme(name="", group="frequency", half_cycles=1)
     steps = {"1/30": 1.0 / 30.0, "1/240": 1.0 / 240.0, "1e-3": 1e-3, "1e-4": 1e-4, "1e-5": 1e-5}
     return (

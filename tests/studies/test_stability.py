@@ -11,7 +11,7 @@ from analytic import Outcome, Response, simulate
 from analytic.response import History, Impact
 from studies import stability
 from studies.__main__ import run as rocking
-from studies.cases.extreme import QUICK, Extreme, contact_settings, extremes
+from studies.cases.extreme import QUICK, SPRINGS, Extreme, extremes
 from studies.drawing.stability import MARKS
 from studies.kit.run import lost_row, run
 from studies.kit.study import Study
@@ -71,9 +71,9 @@ def test_cases_are_asked_of_those_who_have_what_is_extreme(case, source, asked):
 def test_a_case_becomes_options_of_an_engine():
     assert named("friction 1e9").options("pybullet:naive")["friction"] == 10.0  # Bullet's largest
     assert named("friction 1e9").options("mujoco")["friction"] == 1e9
-    settings = contact_settings("mujoco", 0.01, 0.0025)
+    settings = SPRINGS["mujoco"](0.01, 0.0025)
     assert settings == {"stiffness": 0.0625, "damping": 0.5}
-    settings = contact_settings("pybullet", 0.01, 0.0025)  # critically damped
+    settings = SPRINGS["pybullet"](0.01, 0.0025)  # critically damped
     assert settings["contact_damping"] == 2 * math.sqrt(settings["contact_stiffness"])
 
 
