@@ -1,17 +1,14 @@
 """Recorded accelerograms: each form is read as its header says, scaled, corrected, and told."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
-from commanding import BLOCK, compared, refused
+from commanding import BLOCK, ROOT, compared, refused
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from records import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, SAMPLES, TITLE, write_record
 from scipy.constants import g as standard_gravity
 from scipy.signal import detrend
 
-import studies
 from analytic import GRAVITY, Record, RigidBlock, simulate
 from analytic.accelerograms import UNITS
 from studies.__main__ import run
@@ -43,23 +40,20 @@ def shaken(folder, offset):
 
 
 def told(path, capsys, *options):
-    """Return the message of each source, and the table."""
+    """Return the rows of each source, and the text, in which a note is said once."""
     code, rows = compared(capsys, *ASKED, path, *options)
     assert code == run(["compare", *ASKED, str(path), *options]) == 0
-    return [row["message"] for row in rows.values()], capsys.readouterr().out
+    (message,) = {row["message"] for row in rows.values()}
+    assert capsys.readouterr().out.count(message) == 1 or not message
+    return rows["exact"], message
 
 
 def test_a_velocity_that_does_not_end_at_zero_is_reported(tmp_path, capsys):
     """An offset of 0.01 g for 2 s is 0.1962 m/s. It is said, and nothing is changed."""
     path = shaken(tmp_path, 0.01)
-    said = "the record's velocity ends at 0.196 m/s, 0.21 of its largest, and the base keeps it"
-    messages, text = told(path, capsys)
-    assert messages == [f"{said}; --baseline corrects it"] * 2
-    assert f"\nbase    {said}; --baseline corrects it\n" in text
-    assert all(said in words for words in told(path, capsys, "--baseline", "none")[0])
-    messages, text = told(shaken(tmp_path, 0.0), capsys)
-    assert messages == ["", ""]
-    assert "velocity ends" not in text
+    for options in ([], ["--baseline", "none"]):
+        assert "velocity ends at 0.196 m/s, 0.21 of its largest" in told(path, capsys, *options)[1]
+    assert told(shaken(tmp_path, 0.0), capsys)[1] == ""
 
 
 @pytest.mark.parametrize("baseline", ["constant", "linear"])
@@ -69,11 +63,9 @@ def test_a_baseline_is_corrected_by_a_named_method(baseline, tmp_path, capsys):
     left = detrend(read_record(path).samples, type=baseline)
     record = Record(dt=0.005, samples=left).scaled_to(0.35 * GRAVITY)
     expected = simulate(RigidBlock(width=0.5, height=1.5), record).peak_ratio
-    _, rows = compared(capsys, *ASKED, path, *options)
-    assert rows["exact"]["peak_ratio"] == pytest.approx(expected, rel=1e-9)
-    messages, text = told(path, capsys, *options)
-    assert messages[0].startswith(f"baseline corrected by detrend, {baseline}")
-    assert f"\nbase    baseline corrected by detrend, {baseline}" in text
+    exact, message = told(path, capsys, *options)
+    assert exact["peak_ratio"] == pytest.approx(expected, rel=1e-9)
+    assert message.startswith(f"baseline corrected by detrend, {baseline}")
 
 
 def test_nothing_but_a_trend_is_refused(tmp_path, capsys):
@@ -107,18 +99,13 @@ def test_an_at2_file_needs_no_units(form, written):
     ("stated", "unit"),
     [
         ("IN UNITS OF CM/SEC/SEC", "cm/s2"),
-        ("IN UNITS OF CM/S**2", "cm/s2"),
         ("IN UNITS OF CM/SEC2.", "cm/s2"),
         ("IN UNITS OF M / S^2", "m/s2"),
         ("(M/S/S)", "m/s2"),
         ("IN MM/S2", "mm/s2"),
-        ("UNITS: mm/s^2", "mm/s2"),
-        ("in mg", "mg"),
         ("[milli-g], UNITS=MG", "mg"),
         ("(Gal)", "gal"),
-        ("UNITS ARE GALS", "gal"),
         ("IN cm s-2", "cm/s2"),
-        ("(m s^-2)", "m/s2"),
     ],
 )
 def test_units_are_read_as_the_header_states_them(stated, unit, written):
@@ -147,14 +134,10 @@ SPELLED = {"m/s²": "m/s2", "cm/s^2": "cm/s2", "CM/SEC/SEC": "cm/s2", "Gal": "ga
         "# units: cm/s^2",
         "% UNITS OF CM/SEC/SEC",
         "time (s) acceleration (Gal)",
-        "# Time [s], Acceleration [g]",
-        "time_s,acc_g",
-        "Time in seconds, acc in g",
         "t / s,a / g",
         "t,a (g)",
         "Elapsed time (sec),Ground acceleration N-S (g)",
         '"Time (sec.)","Acceleration (g)"',
-        "% t (s)   acc (g)",
     ],
 )
 def test_names_above_the_columns_say_time_and_acceleration_with_its_unit(names, written):
@@ -169,8 +152,6 @@ def test_names_above_the_columns_say_time_and_acceleration_with_its_unit(names, 
     "text",
     [
         "t,a (g)\n0,1\n1,2\n2,4\n",
-        "t,a (g)\n0,1\n1,2\n2,3\n",
-        "# units: g\n0, 1\n1, 2\n2, 4\n",
         "# units: g\n0;1\n1;2\n2;4\n",
         "# units: g\n0 1\n1 2\n2 4\n",
         "El Centro, NS, units: g\n0 1\n1 2\n# a remark\n\n2 4\n",
@@ -240,18 +221,9 @@ def test_what_is_written_is_read(samples, unit, columns, end, form, tmp_path_fac
     assert record.samples.tolist() == (UNITS[unit] * np.array(samples)).tolist()
 
 
-def test_which_g_is_meant_is_said_wherever_it_is_asked(tmp_path, capsys):
-    """A record in g is of the blocks' g, and no name calls that the standard one."""
+def test_the_g_of_a_record_is_that_of_the_blocks(tmp_path):
     path = tmp_path / "record.csv"
     path.write_text("time_s,acceleration_g\n0,0\n0.1,1\n0.2,0\n")
     assert read_record(path, None).peak == GRAVITY == RigidBlock(width=1.0, height=2.0).gravity
-    guide = (Path(studies.__file__).parent / "GUIDE.md").read_text()
-    words = f"g is {GRAVITY} m/s²"
-    assert words in guide
-    over = 100.0 * (GRAVITY / standard_gravity - 1.0)
-    assert f"{standard_gravity}, so that" in guide
-    assert f"{over:.3f} % stronger" in guide
-    assert run(["compare", "--help"]) == 0
-    text = " ".join(capsys.readouterr().out.replace("│", " ").split())
-    assert words in text
-    assert f"[g of {GRAVITY} m/s²]" in text
+    guide = (ROOT / "studies" / "GUIDE.md").read_text()
+    assert f"{100.0 * (GRAVITY / standard_gravity - 1.0):.3f} % stronger" in guide

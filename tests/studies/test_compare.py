@@ -7,7 +7,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from commanding import CASE, compared, python
 from given import BLOCK, PULSE
@@ -73,12 +72,6 @@ def test_kappa_and_sensitivity_are_of_the_case_and_null_where_an_outcome_changes
     assert (rows["exact"]["outcome"], rows["exact"]["sensitivity"]) == ("rocked", None)
 
 
-def test_a_gentle_pulse_leaves_the_block_at_rest(capsys):
-    gentle = [*CASE[:4], "--amplitude", "0.2", *CASE[6:]]
-    _, rows = compared(capsys, *gentle, "--sources", "exact", "housner")
-    assert [(row["outcome"], row["peak_ratio"]) for row in rows.values()] == [("at rest", 0.0)] * 2
-
-
 def test_the_text_fits_the_screen_and_has_the_columns_of_json(capsys, tmp_path):
     plot = tmp_path / "histories.png"
     asked = [*CASE, "--duration", 2.5, "--sources", "rk4", "average-acceleration", "housner"]
@@ -111,7 +104,7 @@ def test_rate_phase_and_degrees(turned, capsys):
     theta, rate = 0.2 * BLOCK.alpha, -0.3 * BLOCK.alpha * BLOCK.p
     unit = (math.radians(1.0),) * 3 if turned else (BLOCK.alpha, BLOCK.alpha * BLOCK.p, 1.0)
     tilt, turning, phase = (repr(x / u) for x, u in zip((theta, rate, 2.0), unit, strict=True))
-    start = ["--tilt", tilt, "--rate", turning, "--phase", phase, *turned]
+    start = ["--tilt", tilt, "--rate", turning, "--phase", phase, *turned, "--half-cycles", "2"]
     row = compared(capsys, *CASE, *start, "--sources", "exact")[1]["exact"]
     pulse = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2, phase=2.0)
     exact = simulate(BLOCK, pulse, start=(theta, rate), duration=pulse.duration + 8.0 / BLOCK.p)
@@ -129,15 +122,6 @@ def test_where_the_reference_is_not_valid(capsys):
     assert (row["valid"], row["min_normal"] < 0.0) == (False, True)
     slender = [*CASE[:4], "--amplitude", "1.0", "--omega", "3", "--sources", "exact"]
     assert compared(capsys, *slender)[1]["exact"]["valid"] is True
-
-
-def test_half_cycles_replace_the_pulse(capsys):
-    names = ["--sources", "exact", "--duration", "3"]
-    two, full, three = (
-        compared(capsys, *CASE, *pulse, *names)[1]["exact"]["peak_ratio"]
-        for pulse in (["--half-cycles", "2"], ["--pulse", "full-sine"], ["--half-cycles", "3"])
-    )
-    assert two == full != three
 
 
 SHAKEN = [*CASE[:4], "--amplitude", "0.5", "--omega", "9"]
@@ -234,31 +218,18 @@ def test_side_by_side_is_what_compare_tells(capsys):
     ("options", "problem"),
     [
         ({"sources": []}, r"sources is \[\]; it must be a list of one name or more"),
-        ({"sources": "exact"}, "sources is 'exact'; it must be a list"),
         ({"sources": ["exat"]}, "source is 'exat', perhaps 'exact'; it must be one of exact"),
         ({"sources": ["mujoco"], "dt": 0.002}, "^dt is 0.002; it must come with equal steps"),
         ({"sources": ["rk4"], "dt": -1.0}, "^dt is -1; it must be"),
         ({"sources": ["rk4"], "friction": 1.0}, "^friction is 1; it must come with an engine"),
         ({"sources": ["mujoco"], "friction": math.nan}, "friction is nan; it must be a finite"),
         ({"sources": ["exact"], "duration": 0.1}, "^duration is 0.1; it must be at least"),
-        ({"sources": ["rk4"], "dt": math.nan}, "^dt is nan; it must be a finite number"),
-        ({"sources": ["exact"], "start": (math.nan, 0.0)}, "^start is nan; it must be a finite"),
         ({"sources": ["exact"], "start": (0.1, 0.0, 0.0)}, "^start is .* must be theta"),
     ],
 )
 def test_side_by_side_refuses_what_cannot_be(options, problem):
     with pytest.raises(ValueError, match=problem):
         side_by_side(BLOCK, PULSE, **options)
-
-
-@pytest.mark.parametrize("option", ["friction", "dt", "duration", "start"])
-def test_side_by_side_takes_numbers_of_any_type(option):
-    def peak(value):
-        given = {option: (value, 0.0) if option == "start" else value}
-        return side_by_side(BLOCK, PULSE, ["mujoco:naive"], **given)["peak_ratio"].item()
-
-    value = np.float32({"duration": 2.7, "dt": 0.0021}.get(option, 0.3))
-    assert peak(value) == peak(float(value))
 
 
 def test_the_guide_s_python_runs_as_a_script_of_one_s_own(tmp_path):

@@ -105,13 +105,6 @@ def test_a_wrong_outcome_is_an_infinite_error_and_each_table_has_its_rows():
     assert {row["table"] for row in STUDY.needed(rows)} == {"precision"}
 
 
-def test_a_failed_row_has_no_error():
-    lost = replace(few("pymunk")[0], lost=Response.failure("it ended"))
-    row = measure(lost)
-    assert (row["outcome"], row["message"]) == ("failed", "it ended")
-    assert math.isnan(row["error"]) and math.isnan(row["impact_error"])
-
-
 TIMED = [name for name in core_engines() if name in OWN_STEP]
 
 
