@@ -6,6 +6,7 @@ are ground times, from the start of the base motion.
 """
 
 from analytic.block import GRAVITY, RigidBlock, Rocker, housner_restitution
+from analytic.cases import peak_ratios
 from analytic.conditioning import condition_numbers, conditioning, sensitivities, sensitivity
 from analytic.frame import RockingFrame, frame_restitution
 from analytic.frame_forces import frame_demands, frame_faults
@@ -14,7 +15,7 @@ from analytic.models import MODELS
 from analytic.motion import Delayed, Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.response import History, Impact, Outcome, Response
-from analytic.simulate import peak_ratios, simulate
+from analytic.simulate import simulate
 from analytic.slide import SlidingBlock
 from analytic.steppers import integrate
 

@@ -1,4 +1,4 @@
-"""Many cases of pulses at once: broadcast, checked, and solved part by part on all cores."""
+"""Many responses to pulses at once: broadcast, checked, and solved part by part on all cores."""
 
 import math
 import os
@@ -11,151 +11,92 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.checks import MOST_HALF_CYCLES, whole
-from analytic.kernels.compiled import form_for, inner, kernel
-from analytic.kernels.law import FloatArray, Law
+from analytic.kernels.excursions import BROKEN, OVERTURNED, TOO_LONG, End, march, workspace
+from analytic.kernels.forms import Kernel
+from analytic.kernels.law import UPRIGHT, FloatArray, Law, Notes
+from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
 from analytic.models import Model, find_model
+from analytic.simulate import OUTCOMES
 
 PART = 4096
 """Cases that a core takes at a time: enough that handing them over costs nothing, and few enough
 that no core is left with much to do when the others are done."""
-
 MOST_THREADS = 1024
-
-SolvePart = Callable[[slice, bool, FloatArray, FloatArray], None]
-"""Solves a part of the cases, a slice of all: given whether the model is linear, its constants
-(shape (5, n), `Model.constants`) and the cases (shape (5, n)): alpha, amplitude, omega/p, half
-cycles, restitution."""
 
 
 @dataclass(frozen=True, slots=True)
-class Cases:
-    """Cases of a model, each parameter in the broadcast shape; without a restitution Housner's."""
+class Part:
+    """Some of the cases, solved.
 
-    model: Model
-    columns: tuple[NDArray[Any], ...]
-    restitution: bool
+    where is their slice of all; cases (5, n) are alpha, amplitude, omega/p, half cycles and
+    restitution; constants (5, n) those of `Model.constants`; ends (8, n) the fields of `End`.
+    """
 
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of the cases."""
-        return self.columns[0].shape
-
-    @property
-    def size(self) -> int:
-        """Number of cases."""
-        return self.columns[0].size
-
-    def solve(self, solve: SolvePart, threads: int | None = None) -> None:
-        """Hand all cases to a compiled solver in parts, which needs no more memory than they do.
-
-        Raises
-        ------
-        ValueError
-            If a parameter is outside its range.
-        """
-        count = os.cpu_count() if threads is None else whole("threads", threads, MOST_THREADS)
-
-        def one(start: int) -> None:
-            part = slice(start, min(start + PART, self.size))
-            cases = np.array([column.flat[part] for column in self.columns], dtype=np.float64)
-            if not self.restitution:
-                form_for(self.size, fill_restitution)(cases[0], cases[4])
-            check_cases(cases)
-            solve(part, self.model.linear, np.stack(self.model.constants(cases[0])), cases)
-
-        starts = range(0, self.size, PART)
-        if len(starts) <= 1:
-            for start in starts:
-                one(start)
-            return
-        with ThreadPoolExecutor(count) as pool:
-            for _ in pool.map(one, starts):
-                pass
+    where: slice
+    cases: FloatArray
+    constants: FloatArray
+    ends: FloatArray
 
 
-def pose(
-    alpha: ArrayLike,
-    amplitude_g: ArrayLike,
-    omega_over_p: ArrayLike,
-    half_cycles: ArrayLike,
+def solve_cases(
+    given: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike],
     model: str | Model,
     restitution: ArrayLike | None,
-) -> Cases:
-    """Return the cases that the arguments of `peak_ratios` name.
+    threads: int | None,
+    outputs: tuple[Any, ...],
+    take: Callable[..., None],
+) -> list[NDArray[Any]]:
+    """Solve the cases of `peak_ratios`, which need no more memory than they and the outputs do.
 
-    Parameters
-    ----------
-    alpha, amplitude_g, omega_over_p, half_cycles, model, restitution
-        As for `analytic.simulate.peak_ratios`.
-
-    Raises
-    ------
-    ValueError
-        If there is no such model, or the shapes do not broadcast.
+    take is called with each `Part` and the arrays of its outputs, of the types in `outputs`; whole,
+    these are returned in the broadcast shape.
     """
     declared, eta = find_model(model), 0.0 if restitution is None else restitution
-    columns = np.broadcast_arrays(alpha, amplitude_g, omega_over_p, half_cycles, eta)
-    return Cases(declared, tuple(columns), restitution is not None)
+    columns = np.broadcast_arrays(*given, eta)
+    size, shape = columns[0].size, columns[0].shape
+    count = os.cpu_count() if threads is None else whole("threads", threads, MOST_THREADS)
+    written = [np.empty(size, kind) for kind in outputs]
 
+    def one(start: int) -> None:
+        where = slice(start, min(start + PART, size))
+        cases = np.array([column.flat[where] for column in columns], dtype=np.float64)
+        if restitution is None:
+            cases[4] = housner_restitutions(cases[0])
+        check_cases(cases)
+        constants = np.stack(declared.constants(cases[0]))
+        omega, half_cycles = cases[2], cases[3]
+        steps = np.max(half_cycles * (1.0 + math.pi / omega), initial=0.0)
+        solve = PULSES.few(size, steps)
+        exactly, pulse = accuracy(TOLERANCE), np.zeros((2, 7))
+        ends = solve(declared.linear, exactly, constants, cases, pulse, workspace())
+        take(Part(where, cases, constants, ends), *(array[where] for array in written))
 
-@kernel
-def fill_restitution(alpha: FloatArray, eta: FloatArray) -> None:
-    """Write Housner's velocity ratio, or 0 where it is negative, for each slenderness.
-
-    See `analytic.block.housner_restitution`.
-    """
-    for i in range(len(alpha)):
-        sine = math.sin(alpha[i])
-        eta[i] = max(1.0 - 1.5 * (sine * sine), 0.0)
+    starts = range(0, size, PART)
+    if len(starts) <= 1:
+        for start in starts:
+            one(start)
+    else:
+        with ThreadPoolExecutor(count) as pool:
+            list(pool.map(one, starts))
+    return [array.reshape(shape) for array in written]
 
 
 def housner_restitutions(alpha: ArrayLike) -> FloatArray:
-    """Return what a case has without a restitution of its own, in the shape of the slenderness."""
-    slender = np.array(alpha, dtype=np.float64)
-    found = np.empty(slender.size)
-    form_for(found.size, fill_restitution)(slender.ravel(), found)
+    """Return `block.housner_restitution`, or 0 where it is negative, for each slenderness."""
+    slender = np.asarray(alpha, dtype=np.float64)
+    sines = map(math.sin, slender.ravel().tolist())
+    found = np.array([max(1.0 - 1.5 * (sine * sine), 0.0) for sine in sines])
     return found.reshape(slender.shape)
-
-
-@inner
-def law_of(linear: bool, constants: FloatArray, cases: FloatArray, i: int) -> Law:
-    """Return the law of a case.
-
-    Parameters
-    ----------
-    linear : bool, whether the model is
-    constants : ndarray (5, n), of `Model.constants`
-    cases : ndarray (5, n), alpha [rad], amplitude [g], omega/p, half cycles, restitution
-    i : int, column of the case
-    """
-    k, saddle, factor = constants[0][i], constants[1][i], constants[2][i]
-    return Law(linear, k, saddle, factor, constants[3][i], constants[4][i], cases[4][i])
-
-
-@inner
-def write_pulse(cases: FloatArray, i: int, segment: FloatArray) -> None:
-    """Write the pulse of a case into a segment, in units of 1/p and g.
-
-    Parameters
-    ----------
-    cases : ndarray (5, n), as for `law_of`
-    i : int, column of the case
-    segment : ndarray (7,), a row of `motion.SEGMENT_COLUMNS`; zero but for what is written
-    """
-    omega = cases[2][i]
-    segment[1] = cases[3][i] * math.pi / omega
-    segment[2] = cases[1][i]
-    segment[3] = omega
 
 
 def check_cases(cases: FloatArray) -> None:
     """Raise ValueError unless every column of (alpha, amplitude, omega, n, eta) is in range."""
-    alpha, _, omega, half_cycles, eta = cases
+    alpha, amplitude, omega, half_cycles, eta = cases
     whole = (half_cycles >= 1.0) & (half_cycles == np.floor(half_cycles))
     whole &= half_cycles <= MOST_HALF_CYCLES
     rules = {
         "alpha": (alpha, (alpha > 0.0) & (alpha < 0.5 * math.pi), "in (0, pi/2)"),
-        "amplitude_g": (cases[1], np.isfinite(cases[1]), "finite"),
+        "amplitude_g": (amplitude, np.isfinite(amplitude), "finite"),
         "omega_over_p": (omega, (omega > 0.0) & np.isfinite(omega), "positive and finite"),
         "half_cycles": (half_cycles, whole, f"a whole number from 1 to {MOST_HALF_CYCLES:g}"),
         "restitution": (eta, (eta >= 0.0) & (eta <= 1.0), "between 0 and 1"),
@@ -163,3 +104,96 @@ def check_cases(cases: FloatArray) -> None:
     for name, (column, allowed, words) in rules.items():
         if not np.all(allowed):
             raise ValueError(f"{name} is {column[~allowed][0]}; it must be {words}")
+
+
+def solve_pulses(
+    linear: bool,
+    exactly: Accuracy,
+    constants: FloatArray,
+    cases: FloatArray,
+    pulse: FloatArray,
+    work: FloatArray,
+) -> FloatArray:
+    """Return the ends of cases; all is as in `Part`, pulse (2, 7) is zero, and work spare."""
+    count = len(cases[0])
+    ends = np.empty((8, count))
+    notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
+    for i in range(count):
+        k, saddle, factor = constants[0][i], constants[1][i], constants[2][i]
+        law = Law(linear, k, saddle, factor, constants[3][i], constants[4][i], cases[4][i])
+        amplitude, omega = cases[1][i], cases[2][i]
+        over = cases[3][i] * math.pi / omega
+        pulse[0][1], pulse[0][2], pulse[0][3] = over, amplitude, omega
+        pulse[1][0] = pulse[1][1] = over
+        end = End(BROKEN, 0.0, 0, 0, 0, 0.0, 0.0, 0.0)
+        if abs(over) < math.inf:
+            end = march(law, exactly, pulse, UPRIGHT, notes, work)
+        ends[0, i], ends[1, i], ends[2, i], ends[3, i] = (
+            end.outcome,
+            end.peak,
+            end.steps,
+            end.impacts,
+        )
+        ends[4, i], ends[5, i], ends[6, i], ends[7, i] = end.events, end.time, end.y, end.v
+    return ends
+
+
+PULSES = Kernel(solve_pulses)
+
+
+def peak_ratios(
+    alpha: ArrayLike,
+    amplitude_g: ArrayLike,
+    omega_over_p: ArrayLike,
+    half_cycles: ArrayLike,
+    model: str | Model = "exact",
+    restitution: ArrayLike | None = None,
+    threads: int | None = None,
+) -> tuple[FloatArray, NDArray[np.object_]]:
+    """Solve many responses to sine pulses, on all cores.
+
+    By similarity a case has no more parameters than these.
+
+    Parameters
+    ----------
+    alpha : array_like
+        Slenderness [rad], in (0, pi/2).
+    amplitude_g : array_like
+        Amplitude of the pulse [g].
+    omega_over_p : array_like
+        Circular frequency of the pulse over the frequency parameter of the block.
+    half_cycles : array_like of int
+        Length of the pulse.
+    model : {"exact", "housner", "modified", "onset-matched"}
+    restitution : array_like, optional
+        Velocity ratio at impacts, in [0, 1]; Housner's value by default.
+    threads : int, optional
+        At most 1024; by default the number of cores.
+
+    Returns
+    -------
+    peak_ratio : ndarray
+        Largest abs(theta)/alpha in the broadcast shape; inf when overturned, 0 at rest.
+    outcome : ndarray of Outcome
+
+    Raises
+    ------
+    ValueError
+        If an argument is outside its range or the shapes do not broadcast.
+
+    Examples
+    --------
+    >>> peak, outcome = peak_ratios(0.32, [0.3, 0.4, 0.9], 2.0, 1)
+    >>> peak.round(4), [one.value for one in outcome]
+    (array([0.    , 0.0446,    inf]), ['at rest', 'rocked', 'overturned'])
+    """
+
+    def take(part: Part, peaks: FloatArray, codes: NDArray[np.int8]) -> None:
+        codes[:] = part.ends[0]
+        peaks[:] = part.ends[1] / part.cases[0]
+        peaks[codes == OVERTURNED] = math.inf
+        peaks[(codes == TOO_LONG) | (codes == BROKEN)] = math.nan
+
+    given = (alpha, amplitude_g, omega_over_p, half_cycles)
+    peaks, codes = solve_cases(given, model, restitution, threads, (np.float64, np.int8), take)
+    return peaks, np.array(OUTCOMES, dtype=object)[codes]

@@ -1,7 +1,7 @@
 """How far small errors move a peak: condition numbers, and what errors of a finite size do.
 
-A derivative (`analytic.kernels.derivatives`) sees no uplift that comes or goes beside it. So near
-the onset, and near overturning, the peak is solved again with both moved by a little.
+Condition numbers are differences over a move so small that hardly an uplift comes or goes within
+it. So near the onset, and near overturning, `sensitivity` moves the peak by more.
 """
 
 import math
@@ -12,21 +12,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.block import Rocker
-from analytic.cases import housner_restitutions, law_of, pose, write_pulse
-from analytic.kernels.compiled import form_for, kernel, listed
-from analytic.kernels.derivatives import AMPLITUDE, RESTITUTION, condition
-from analytic.kernels.excursions import march, workspace
-from analytic.kernels.law import UPRIGHT
-from analytic.kernels.notes import Notes
-from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
-from analytic.models import Model, find_model
+from analytic.cases import housner_restitutions, peak_ratios
+from analytic.kernels.excursions import MARCH, workspace
+from analytic.kernels.law import Notes
+from analytic.kernels.taylor import TOLERANCE, accuracy
+from analytic.models import Model
 from analytic.motion import FloatArray, Motion
 from analytic.response import Outcome
-from analytic.simulate import OUTCOMES, peak_ratios, scaled_segments
-from analytic.start import REST, folded
+from analytic.simulate import OUTCOMES
+from analytic.start import REST, pose
 
 MOVES = (-1e-4, 1e-4, -1e-6, 1e-6)
 """Relative changes of the motion's scale, and of eta, that a `sensitivity` is found with."""
+NUDGE = 3e-7
+"""Relative change of a condition number's difference."""
+
+Solve = Callable[[float, float], tuple[Any, Any]]
+"""Peak and outcome by the scales of motion and eta."""
 
 
 class Conditioning(NamedTuple):
@@ -58,16 +60,8 @@ def condition_numbers(
     >>> kappa.round(3)
     array([26.363,    nan])
     """
-    cases = pose(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
-    exactly = accuracy(TOLERANCE)
-    by_amplitude, by_eta = np.empty(cases.size), np.empty(cases.size)
-    solver = form_for(cases.size, condition_pulses)
-
-    def solve(part: slice, linear: bool, constants: FloatArray, given: FloatArray) -> None:
-        solver(linear, exactly, constants, given, by_amplitude[part], by_eta[part])
-
-    cases.solve(solve)
-    return Conditioning(by_amplitude.reshape(cases.shape), by_eta.reshape(cases.shape))
+    cases = (alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
+    return Conditioning(*_slopes(_many(*cases)))
 
 
 def conditioning(
@@ -97,10 +91,8 @@ def conditioning(
     >>> [round(kappa, 3) for kappa in conditioning(block, pulse)]
     [26.603, 1.823]
     """
-    law = find_model(model).law(block.alpha, block.restitution)
-    begin, segments = folded(block, law, motion, start), scaled_segments(block, motion)
-    found = condition(law, accuracy(TOLERANCE), segments, begin, workspace())
-    return float(found[AMPLITUDE]), float(found[RESTITUTION])
+    by_amplitude, by_eta = _slopes(scaled(block, motion, model, start))
+    return float(by_amplitude), float(by_eta)
 
 
 def sensitivities(
@@ -127,15 +119,7 @@ def sensitivities(
     >>> sensitivities(0.32, [0.4, 0.5], 2.0, 2).round(2)
     array([26.39,  0.  ])
     """
-    eta = housner_restitutions(alpha) if restitution is None else np.asarray(restitution, float)
-
-    def solve(stronger: float, livelier: float) -> tuple[FloatArray, NDArray[np.object_]]:
-        scaled = stronger * np.asarray(amplitude_g, float)
-        return peak_ratios(
-            alpha, scaled, omega_over_p, half_cycles, model, np.fmin(livelier * eta, 1.0)
-        )
-
-    return _largest_move(solve)
+    return _largest_move(_many(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution))
 
 
 def sensitivity(
@@ -144,12 +128,7 @@ def sensitivity(
     model: str | Model = "exact",
     start: tuple[float, float] = REST,
 ) -> float:
-    """Return what `sensitivities` does, of one peak.
-
-    Parameters
-    ----------
-    block, motion, model, start
-        As for `simulate`, with its errors; the start is the same for all moves.
+    """Return what `sensitivities` does, of one peak; the arguments are those of `conditioning`.
 
     Examples
     --------
@@ -180,21 +159,55 @@ def scaled(
         Given both factors, it returns the largest rotation [rad] and the outcome; eta stays at most
         1. It writes nothing else down and may be called from several threads.
     """
-    law = find_model(model).law(block.alpha, block.restitution)
-    begin, segments = folded(block, law, motion, start), scaled_segments(block, motion)
+    posed = pose(block, motion, model, start)
+    moving = posed.then_still(posed.segments[-1, 1])
+    broken = not np.all(np.isfinite(posed.segments))
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
 
     def solve(stronger: float, livelier: float) -> tuple[float, Outcome]:
-        harder = segments * np.array([1.0, 1.0, stronger, 1.0, 1.0, stronger, stronger])
-        moved = law._replace(eta=min(livelier * law.eta, 1.0))
-        end = march(moved, accuracy(TOLERANCE), harder, begin, 0.0, notes, workspace())
+        if broken:
+            return math.nan, Outcome.FAILED
+        harder = moving * np.array([1.0, 1.0, stronger, 1.0, 1.0, stronger, stronger])
+        moved = posed.law._replace(eta=min(livelier * posed.law.eta, 1.0))
+        march = MARCH.few(1, posed.steps)
+        end = march(moved, accuracy(TOLERANCE), harder, posed.start, notes, workspace())
         return end.peak, OUTCOMES[end.outcome]
 
     return solve
 
 
-def _largest_move(solve: Callable[[float, float], tuple[Any, Any]]) -> FloatArray:
-    """Return a sensitivity from what gives peak and outcome by the scales of motion and eta."""
+def _many(
+    alpha: ArrayLike,
+    amplitude_g: ArrayLike,
+    omega_over_p: ArrayLike,
+    half_cycles: ArrayLike,
+    model: str | Model,
+    restitution: ArrayLike | None,
+) -> Solve:
+    eta = housner_restitutions(alpha) if restitution is None else np.asarray(restitution, float)
+
+    def solve(stronger: float, livelier: float) -> tuple[FloatArray, NDArray[np.object_]]:
+        scaled = stronger * np.asarray(amplitude_g, float)
+        moved = np.fmin(livelier * eta, 1.0)
+        return peak_ratios(alpha, scaled, omega_over_p, half_cycles, model, moved)
+
+    return solve
+
+
+def _slopes(solve: Solve) -> tuple[FloatArray, FloatArray]:
+    """Return the condition numbers: by a central difference, and one towards a smaller eta."""
+    still, outcome = solve(1.0, 1.0)
+    high, low = solve(1.0 + NUDGE, 1.0)[0], solve(1.0 - NUDGE, 1.0)[0]
+    near, far = solve(1.0, 1.0 - NUDGE)[0], solve(1.0, 1.0 - 2.0 * NUDGE)[0]
+    with np.errstate(all="ignore"):
+        by_amplitude = np.subtract(high, low) / still
+        by_eta = (3.0 * np.subtract(still, near) - np.subtract(near, far)) / still
+        found = (np.where(outcome == Outcome.ROCKED, it, math.nan) for it in (by_amplitude, by_eta))
+        return tuple(each / (2.0 * NUDGE) for each in found)  # type: ignore[return-value]
+
+
+def _largest_move(solve: Solve) -> FloatArray:
+    """Return a sensitivity."""
     still, outcome = solve(1.0, 1.0)
     largest = np.zeros(np.shape(still))
     for move in MOVES:
@@ -207,25 +220,3 @@ def _largest_move(solve: Callable[[float, float], tuple[Any, Any]]) -> FloatArra
             failed = (outcome == Outcome.FAILED) | (other == Outcome.FAILED)
             largest = np.maximum(largest, np.where(failed, math.nan, change))
     return largest
-
-
-@kernel
-def condition_pulses(
-    linear: bool,
-    exactly: Accuracy,
-    constants: FloatArray,
-    cases: FloatArray,
-    by_amplitude: FloatArray,
-    by_eta: FloatArray,
-) -> None:
-    """Write the condition numbers of each case, one a column.
-
-    linear, constants and cases are those of `analytic.cases.SolvePart`; the last arrays, (n,), are
-    written.
-    """
-    given, held, work = listed(cases), listed(constants), workspace()
-    segments = np.zeros((1, 7))
-    for i in range(len(given[0])):
-        law = law_of(linear, held, given, i)
-        write_pulse(given, i, segments[0])
-        by_amplitude[i], by_eta[i] = condition(law, exactly, segments, UPRIGHT, work)

@@ -1,37 +1,80 @@
-"""Where a response starts: at rest, tilted, or turning, at the time zero of the ground motion."""
+"""One response as the kernels take it: its start, checked, and its motion in units of 1/p and g."""
 
 import math
-from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from analytic.block import Rocker
-from analytic.checks import sized
-from analytic.kernels.law import Law, Start
+from analytic.checks import finite, sized
+from analytic.kernels.law import FloatArray, Law, Start
 from analytic.kernels.rest import strongest_between
-from analytic.motion import FloatArray, Motion
+from analytic.models import Model, find_model
+from analytic.motion import Motion
 
 LEAST_TILT = 1e-30
 """Tilt over alpha, below which the time to the first impact is lost in a step of the solution."""
-
 REST = (0.0, 0.0)
 """Rotation [rad] and angular velocity [rad/s] of a block at rest on its base."""
+LEAST_LOSS = 0.02
+"""Loss of velocity at an impact below which no more steps are expected."""
+
+
+class Posed(NamedTuple):
+    """A response to be solved.
+
+    law and start are as the kernels take them; segments (m, 7) are those of the motion, in units of
+    1/p and g, and not finite where they overflow; until [1/p] is the end of what is followed, and
+    times [s] are those of the history.
+    """
+
+    law: Law
+    start: Start
+    segments: FloatArray
+    until: float
+    times: FloatArray
+
+    @property
+    def steps(self) -> float:
+        """Some number of steps that the exact solution may take."""
+        _, end, _, omega, *_ = self.segments.T
+        turns = float(np.sum(omega * np.diff(end, prepend=0.0))) / math.pi
+        bounces = (turns + self.until) / max(1.0 - self.law.eta, LEAST_LOSS)
+        return len(self.segments) + bounces
+
+    def then_still(self, end: float) -> FloatArray:
+        """Return the motion with one segment more, on which nothing moves until a time [1/p]."""
+        return np.vstack([self.segments, [self.segments[-1, 1], end, 0.0, 0.0, 0.0, 0.0, 0.0]])
+
+
+def pose(
+    block: Rocker,
+    motion: Motion,
+    model: str | Model,
+    start: tuple[float, float],
+    duration: float | None = None,
+    times: ArrayLike | None = None,
+) -> Posed:
+    """Return a response to be solved; the arguments, and their errors, are those of `simulate`."""
+    law = find_model(model).law(block.alpha, block.restitution)
+    until, sampled = check_window(motion, duration, times)
+    begin = folded(block, law, motion, start, sampled)
+    p, g = np.float64(block.p), np.float64(block.gravity)
+    with np.errstate(all="ignore"):
+        units = np.array([p, p, 1.0 / g, 1.0 / p, 1.0, 1.0 / g, 1.0 / (g * p)])
+        return Posed(law, begin, motion.segments() * units, until * block.p, sampled)
+
+
+def strongest(motion: Motion) -> float:
+    """Return the largest abs(acceleration) [m/s2] of a ground motion."""
+    return float(strongest_between(motion.segments().tolist(), 0, 0.0, motion.duration))
 
 
 def folded(
-    block: Rocker,
-    law: Law,
-    motion: Motion,
-    start: tuple[float, float],
-    times: Sequence[float] | FloatArray = (),
+    block: Rocker, law: Law, motion: Motion, start: tuple[float, float], times: FloatArray
 ) -> Start:
-    """Return the start of a block, checked and folded to one side, in units of 1/p.
-
-    Parameters
-    ----------
-    block : Rocker, of which p is used
-    law : Law, of the model
-    motion : Motion
-    start : (float, float), theta [rad] and theta' [rad/s]
-    times : sequence of float, optional, where the response is to be sampled [s]
+    """Return a start folded to one side, in units of 1/p; the rest is for the errors.
 
     Raises
     ------
@@ -44,14 +87,11 @@ def folded(
         theta, rate = start
     except (TypeError, ValueError):
         raise ValueError(f"start is {start!r}; it must be theta [rad] and theta' [rad/s]") from None
-    theta, rate = (
-        sized("theta of the start", theta, LEAST_TILT * block.alpha),
-        sized("rate of the start", rate),
-    )
+    theta = sized("theta of the start", theta, LEAST_TILT * block.alpha)
+    rate = sized("rate of the start", rate)
     if abs(theta) >= 0.5 * math.pi:
         raise ValueError(f"theta of the start is {theta!r}; it must be between -pi/2 and pi/2 rad")
-    balanced = abs(theta) == law.saddle and rate == 0.0
-    if balanced and strongest_between(motion.segments().tolist(), 0, 0.0, motion.duration) == 0.0:
+    if abs(theta) == law.saddle and rate == 0.0 == strongest(motion):
         raise ValueError(
             f"start is {start!r}; it must not be the unstable equilibrium where nothing moves"
         )
@@ -60,3 +100,20 @@ def folded(
     if side != 0.0 and len(times) and times[0] < 0.0:
         raise ValueError(f"times begin at {times[0]}; they must not be before the start, at 0")
     return Start(side, abs(theta), side * rate / block.p)
+
+
+def check_window(
+    motion: Motion, duration: float | None, times: ArrayLike | None
+) -> tuple[float, FloatArray]:
+    """Return the time to follow a response to [s] and its sample times [s], as for `simulate`."""
+    sampled = np.empty(0) if times is None else np.array(times, dtype=np.float64)
+    if sampled.ndim != 1 or np.any(np.diff(sampled) < 0.0) or not np.all(np.isfinite(sampled)):
+        raise ValueError("times must be a list of finite, increasing numbers")
+    if duration is None:
+        return max([motion.duration, *sampled[-1:].tolist()]), sampled
+    until = finite("duration", duration)
+    if until < motion.duration:
+        raise ValueError(
+            f"duration is {duration!r}; it must be at least that of the motion, {motion.duration}"
+        )
+    return until, sampled

@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 from analytic.block import Rocker
 from analytic.checks import positive
 from analytic.kernels.closed_form import free_peak
-from analytic.kernels.compiled import inner, kernel, listed, spend
 from analytic.kernels.excursions import (
     AT_REST,
     BROKEN,
@@ -24,23 +23,32 @@ from analytic.kernels.excursions import (
     VANISHING,
     End,
 )
-from analytic.kernels.law import Law, Start, State
-from analytic.kernels.notes import IMPACT, RESTED, START, UPLIFT, Notes, note, sample_rest
+from analytic.kernels.forms import Kernel
+from analytic.kernels.law import (
+    IMPACT,
+    RESTED,
+    UPLIFT,
+    FloatArray,
+    Law,
+    Notes,
+    Start,
+    State,
+    note,
+    sample_rest,
+)
 from analytic.kernels.rest import (
     acceleration,
     after_impact,
     ground,
-    is_finite,
     next_uplift,
     segment_at,
     shaking,
-    then_still,
 )
-from analytic.models import Model, find_model
-from analytic.motion import FloatArray, Motion
+from analytic.models import Model
+from analytic.motion import Motion
 from analytic.response import Response
-from analytic.simulate import as_response, check_window, scaled_segments
-from analytic.start import REST, folded
+from analytic.simulate import as_response
+from analytic.start import REST, pose
 
 METHODS = ("rk4", "average-acceleration")
 STEP = 1e-3
@@ -101,17 +109,17 @@ def integrate(
         raise ValueError(f"method is {method!r}; it must be one of {', '.join(METHODS)}")
     step = positive("step", step)
     event_tolerance = positive("event_tolerance", event_tolerance)
-    law = find_model(model).law(block.alpha, block.restitution)
-    until, sampled = check_window(motion, duration, times)
-    begin = folded(block, law, motion, start, sampled)
-    segments = scaled_segments(block, motion)
+    posed = pose(block, motion, model, start, duration, times)
     solver = Solver(method == "rk4", step, event_tolerance)
+    ended = float(posed.segments[-1, 1])
+    followed = duration is not None and posed.until > ended
+    moving = posed.then_still(posed.until if followed else math.inf)
+    tread = TREAD.few(1, posed.until / step / SOME)
 
     def solve(notes: Notes) -> End:
-        end = until * block.p if duration is not None else 0.0
-        return tread(law, segments, begin, end, notes, solver)
+        return tread(posed.law, moving, posed.start, followed, notes, solver)
 
-    return as_response(block, solve, sampled, times is not None, watched=False)
+    return as_response(block, posed, solve, times is not None, watched=False)
 
 
 class Solver(NamedTuple):
@@ -132,7 +140,6 @@ class Cubic(NamedTuple):
     h: float
 
 
-@inner
 def rk4_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic:
     """Advance by one classical Runge-Kutta step."""
     side, tau, _, y, v = begin
@@ -145,7 +152,6 @@ def rk4_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic:
     return Cubic(y, v, end, v + h * (k1 + 2.0 * (k2 + k3) + k4) / 6.0, h)
 
 
-@inner
 def average_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic:
     """Advance by one step of constant average acceleration.
 
@@ -173,7 +179,6 @@ def average_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic
     return Cubic(y, v, end, v + 0.5 * h * (before + after), h)
 
 
-@inner
 def cubic_at(path: Cubic, x: float) -> tuple[float, float]:
     """Return value and slope of a step at the part x of it."""
     y, v, end, rate, h = path
@@ -183,13 +188,11 @@ def cubic_at(path: Cubic, x: float) -> tuple[float, float]:
     return y + x * (h * v + x * (c2 + x * c3)), v + x * (2.0 * c2 + 3.0 * x * c3) / h
 
 
-@inner
 def turns(path: Cubic) -> bool:
     """Tell whether the block turns back within a step."""
     return path.v > 0.0 and path.rate <= 0.0
 
 
-@inner
 def turning_value(path: Cubic) -> float:
     """Return the maximum of a step that turns."""
     low, high = 0.0, 1.0
@@ -202,7 +205,6 @@ def turning_value(path: Cubic) -> float:
     return cubic_at(path, low)[0]
 
 
-@inner
 def sample_cubic(path: Cubic, begin: State, notes: Notes, n: int) -> int:
     """Sample a step from a state; return the number of samples so far."""
     while n < len(notes.times) and notes.times[n] <= begin.tau + path.h:
@@ -216,7 +218,6 @@ def sample_cubic(path: Cubic, begin: State, notes: Notes, n: int) -> int:
 UNDECIDED = -1
 
 
-@inner
 def verdict(law: Law, path: Cubic, free: bool) -> int:
     """Return whether a block is ROCKED or OVERTURNED by the end of a step, or UNDECIDED.
 
@@ -228,7 +229,6 @@ def verdict(law: Law, path: Cubic, free: bool) -> int:
     return ROCKED if free and turns(path) and y < law.saddle else UNDECIDED
 
 
-@inner
 def next_side(
     law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float, tolerance: float
 ) -> tuple[float, float]:
@@ -242,44 +242,35 @@ def next_side(
     return 0.0 if unseen else onward, wait
 
 
-@kernel
 def tread(
-    law: Law, segments: FloatArray, start: Start, until: float, notes: Notes, solver: Solver
+    law: Law, moving: FloatArray, start: Start, followed: bool, notes: Notes, solver: Solver
 ) -> End:
     """Follow one response with a fixed step; arguments as for `excursions.march`.
 
-    With `until` before the end of the ground motion the march ends when the peak is decided.
+    It ends with the last segment if it is to be `followed`, else when the peak is decided.
     """
-    given = listed(segments)
-    if not is_finite(given):
-        return End(BROKEN, 0.0, 0, 0, 0, 0.0)
-    ended = given[-1][1]
-    last, followed = max(until, ended), until > ended
-    moving = then_still(given, until if followed else math.inf)
+    ended = moving[-1][0]
+    last = moving[-1][1] if followed else ended
     side, y, v = start
     tau, peak, h = 0.0, y, solver.step
     j = steps = impacts = events = n = 0
-    if side != 0.0:
-        events = note(notes.log, events, START, tau, side * y, side * v)
     while True:
         if side == 0.0:
             j, rise, side, _ = next_uplift(moving, j, tau, law.onset)
             n = sample_rest(notes, min(rise, last), n)
             if side == 0.0:
-                outcome = AT_REST if events == 0 else ROCKED
-                return End(outcome, peak, steps, impacts, events, last)
+                outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
+                return End(outcome, peak, steps, impacts, events, last, 0.0, 0.0)
             tau, h = rise, solver.step
             events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
         j = segment_at(moving, j, tau)
-        if followed and tau >= until:
+        if followed and tau >= last:
             ahead = free_peak(law, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
-            return End(outcome, max(peak, ahead), steps, impacts, events, tau)
+            return End(outcome, max(peak, ahead), steps, impacts, events, tau, y, v)
         if steps == MAX_STEPS:
-            return End(TOO_LONG, peak, steps, impacts, events, tau)
+            return End(TOO_LONG, peak, steps, impacts, events, tau, y, v)
 
-        if steps % SOME == 0:
-            spend()
         steps += 1
         segment, begin = moving[j], State(side, tau, 0, y, v)
         landed = tau + h >= segment[1]
@@ -289,7 +280,7 @@ def tread(
         else:
             path = average_step(law, segment, begin, length)
         if not (abs(path.end) + abs(path.rate) < math.inf and length > tau * VANISHING):
-            return End(BROKEN, peak, steps, impacts, events, tau)
+            return End(BROKEN, peak, steps, impacts, events, tau, y, v)
         if path.end < -solver.tolerance and length > 1e-15:
             h = FRACTION * length
             continue
@@ -298,9 +289,9 @@ def tread(
         n = sample_cubic(path, begin, notes, n)
         tau = segment[1] if landed else tau + length
         y, v = path.end, path.rate
-        found = verdict(law, path, until <= ended < tau)
+        found = verdict(law, path, not followed and tau > ended)
         if found != UNDECIDED:
-            return End(found, peak, steps, impacts, events, tau)
+            return End(found, peak, steps, impacts, events, tau, y, v)
         if v > 0.0:
             h = solver.step
         if y <= solver.tolerance and v < 0.0:
@@ -312,3 +303,6 @@ def tread(
             if side == 0.0:
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
+
+
+TREAD = Kernel(tread)

@@ -8,8 +8,7 @@ from itertools import chain
 from pathlib import Path
 
 from analytic import simulate
-from analytic.kernels.compiled import SOURCES
-from analytic.kernels.kept import kept_in
+from analytic.kernels.forms import SOURCES, kept_in
 from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from engines.parts.compiled import PACKAGE

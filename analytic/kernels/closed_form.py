@@ -6,7 +6,6 @@ the energy at y = 0 is multiplied by eta^2 at each impact.
 
 import math
 
-from analytic.kernels.compiled import inner
 from analytic.kernels.law import FloatArray, Law, State
 
 SERIES_BELOW = 1.0
@@ -15,13 +14,11 @@ LOST = 1e-17
 """Part of a sum below which a term, and the smaller ones after it, change no digit."""
 
 
-@inner
 def square(x: float) -> float:
     """Return x^2, as a product: Python's power would round otherwise than a compiled one."""
     return x * x
 
 
-@inner
 def sine_minus_sinh(x: float, u: float) -> float:
     """Return sin(x)/x - sinh(u)/u without cancellation."""
     if max(x, u) > SERIES_BELOW:
@@ -39,7 +36,6 @@ def sine_minus_sinh(x: float, u: float) -> float:
     return total
 
 
-@inner
 def cosh_minus_cosine(x: float, u: float) -> float:
     """Return (cosh(u) - 1)/u^2 - (1 - cos(x))/x^2 without cancellation."""
     if max(x, u) > SERIES_BELOW:
@@ -57,7 +53,6 @@ def cosh_minus_cosine(x: float, u: float) -> float:
     return total
 
 
-@inner
 def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple[float, float]:
     """Return rotation and rate, h > 0 after a state, of y'' = -k^2 [saddle - y + side factor a].
 
@@ -92,7 +87,6 @@ def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple
     return end, velocity
 
 
-@inner
 def work_to(law: Law, y: float) -> float:
     """Return half the squared velocity [p^2] that a free block loses between rotations 0 and y.
 
@@ -109,7 +103,6 @@ def work_to(law: Law, y: float) -> float:
     return 2.0 * math.sin(law.alpha - 0.5 * y) * math.sin(0.5 * y)
 
 
-@inner
 def turning_rotation(law: Law, work: float) -> float:
     """Return the rotation [rad] at which a free block has lost `work`; inf if it passes the saddle.
 
@@ -132,7 +125,6 @@ def turning_rotation(law: Law, work: float) -> float:
     return y
 
 
-@inner
 def free_peak(law: Law, y: float, v: float) -> float:
     """Return the largest rotation [rad] still to come of a free block, inf when it overturns.
 
@@ -149,7 +141,6 @@ def free_peak(law: Law, y: float, v: float) -> float:
     return turning_rotation(law, work)
 
 
-@inner
 def is_lost(law: Law, y: float, v: float) -> bool:
     """Say whether a free block has passed the saddle for good.
 

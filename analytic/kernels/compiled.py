@@ -112,7 +112,10 @@ def interpreting(purse: Purse) -> Iterator[None]:
 
 def compile_all() -> None:
     """Interpret nothing more in this process: there are many cases to come."""
+    from analytic.kernels import forms
+
     Purse.shut = True
+    forms.compile_all()
 
 
 class Kernel:

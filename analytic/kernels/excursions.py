@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.kernels.closed_form import free_peak, linear_state
-from analytic.kernels.compiled import inner, kernel, listed, maker, spend
 from analytic.kernels.forces import (
     forget_fall,
     watch_free,
@@ -19,8 +18,19 @@ from analytic.kernels.forces import (
     watch_to_passing,
     watch_train,
 )
-from analytic.kernels.law import FloatArray, Law, Start, State
-from analytic.kernels.notes import IMPACT, RESTED, START, UPLIFT, Notes, note, sample_rest
+from analytic.kernels.forms import Kernel
+from analytic.kernels.law import (
+    IMPACT,
+    RESTED,
+    UPLIFT,
+    FloatArray,
+    Law,
+    Notes,
+    Start,
+    State,
+    note,
+    sample_rest,
+)
 from analytic.kernels.polynomial import (
     MAX_DEPTH,
     ORDER,
@@ -36,10 +46,8 @@ from analytic.kernels.rest import (
     acceleration,
     after_impact,
     ground,
-    is_finite,
     next_uplift,
     segment_at,
-    then_still,
 )
 from analytic.kernels.taylor import (
     Accuracy,
@@ -65,7 +73,10 @@ LINEAR_STEP = 2.5
 
 
 class End(NamedTuple):
-    """How a march ended; `events` may exceed the capacity of the log."""
+    """How a march ended; `events` may exceed the capacity of the log.
+
+    time, y and v are those of the last state, before any free rocking that is not followed.
+    """
 
     outcome: int
     peak: float
@@ -73,6 +84,8 @@ class End(NamedTuple):
     impacts: int
     events: int
     time: float
+    y: float
+    v: float
 
 
 class Step(NamedTuple):
@@ -90,13 +103,6 @@ class Step(NamedTuple):
     peak: float
 
 
-@maker
-def workspace() -> FloatArray:
-    """Return the workspace that `march` needs."""
-    return np.empty((MAX_DEPTH + 12, ORDER + 1))
-
-
-@inner
 def expand(
     law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, work: FloatArray
 ) -> float:
@@ -122,7 +128,6 @@ def expand(
     return trusted_step(y, accuracy)
 
 
-@inner
 def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: FloatArray) -> float:
     """Return where sum d[i] x^i first equals `level` in (0, 1]; 2 if nowhere.
 
@@ -144,7 +149,6 @@ def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: Flo
     return 2.0 if low > 0.0 else next_root(q, degree, 0.0, work[1:])
 
 
-@inner
 def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
     """Return the time [1/p] after a state, about h, at which the closed form reaches zero."""
     x = h
@@ -159,7 +163,6 @@ def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
     return x
 
 
-@inner
 def take_step(
     law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, peak: float, work: FloatArray
 ) -> Step:
@@ -217,7 +220,6 @@ def take_step(
     return Step(kind, h, x, tau, y, v, peak)
 
 
-@inner
 def sample_step(
     law: Law,
     segment: FloatArray,
@@ -254,15 +256,8 @@ def sample_step(
     return n
 
 
-@kernel
 def march(
-    law: Law,
-    accuracy: Accuracy,
-    segments: FloatArray,
-    start: Start,
-    until: float,
-    notes: Notes,
-    work: FloatArray,
+    law: Law, accuracy: Accuracy, moving: FloatArray, start: Start, notes: Notes, work: FloatArray
 ) -> End:
     """Follow one response.
 
@@ -271,36 +266,17 @@ def march(
     law : Law
     accuracy : Accuracy
         Of the exact model; for a linear one the order is that of the series that brackets events.
-    segments : ndarray (m, 7), ground motion
+    moving : ndarray (m, 7)
+        Ground motion, of which nothing moves on the last segment. The response is followed to its
+        end; outcome and peak of what comes after follow from energy.
     start : Start, state at time zero
-    until : float
-        Time [1/p] to follow the response to, at least to the end of the ground motion. The outcome
-        and the peak of what comes after follow from energy.
     notes : Notes
-    work : ndarray, from `workspace()`
+    work : ndarray (MAX_DEPTH + 12, ORDER + 1), spare
     """
-    given = listed(segments)
-    if not is_finite(given):
-        return End(BROKEN, 0.0, 0, 0, 0, 0.0)
-    moving = then_still(given, max(until, given[-1][1]))
-    seen = Notes(listed(notes.times), notes.samples, notes.log, listed(notes.limits))
-    end = follow(law, accuracy, moving, start, seen, listed(work))
-    for i in range(len(seen.limits)):
-        notes.limits[i] = seen.limits[i]
-    return end
-
-
-@inner
-def follow(
-    law: Law, accuracy: Accuracy, moving: FloatArray, start: Start, notes: Notes, work: FloatArray
-) -> End:
-    """Follow one response to the end of a motion whose last segment is still; as `march`."""
     watched, last = len(notes.limits) > 0, moving[-1][1]
     side, y, v = start
     tau, peak, lead = 0.0, y, 1 if y == 0.0 else 0
     j = steps = impacts = events = n = 0
-    if side != 0.0:
-        events = note(notes.log, events, START, tau, side * y, side * v)
     while True:
         if side == 0.0:
             resting = j
@@ -309,10 +285,10 @@ def follow(
             if watched:
                 watch_rest(notes.limits, moving, resting, tau, rise)
             if side == 0.0:
-                outcome = AT_REST if events == 0 else ROCKED
-                return End(outcome, peak, steps, impacts, events, last)
+                outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
+                return End(outcome, peak, steps, impacts, events, last, 0.0, 0.0)
             tau = rise
-            events = note(notes.log, events, UPLIFT, tau, float(lead), 0.0)
+            events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
         j = segment_at(moving, j, tau)
         if tau >= last:
             while n < len(notes.times) and notes.times[n] <= last:  # of a motion without length
@@ -323,16 +299,15 @@ def follow(
             if watched:
                 watch_free(notes.limits, law, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
-            return End(outcome, max(peak, ahead), steps, impacts, events, last)
+            return End(outcome, max(peak, ahead), steps, impacts, events, last, y, v)
         if steps == MAX_STEPS:
-            return End(TOO_LONG, peak, steps, impacts, events, tau)
+            return End(TOO_LONG, peak, steps, impacts, events, tau, y, v)
 
-        spend()
         steps += 1
         segment, begin = moving[j], State(side, tau, lead, y, v)
         step = take_step(law, accuracy, segment, begin, peak, work)
         if step.kind == LOST:
-            return End(BROKEN, peak, steps, impacts, events, tau)
+            return End(BROKEN, peak, steps, impacts, events, tau, y, v)
         n = sample_step(law, segment, begin, work[4], accuracy.order, step, notes, n)
         if watched:
             if step.y >= law.alpha:
@@ -342,7 +317,7 @@ def follow(
         if step.kind == FALLEN:
             if watched:
                 forget_fall(notes.limits)
-            return End(OVERTURNED, peak, steps, impacts, events, tau)
+            return End(OVERTURNED, peak, steps, impacts, events, tau, y, v)
         if step.kind == HIT:
             impacts += 1
             events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
@@ -354,3 +329,11 @@ def follow(
                     watch_train(notes.limits, law, turned, ground(moving, j, tau), v)
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
+
+
+MARCH = Kernel(march)
+
+
+def workspace() -> FloatArray:
+    """Return the spare numbers that `march` needs."""
+    return np.empty((MAX_DEPTH + 12, ORDER + 1))

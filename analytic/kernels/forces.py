@@ -12,7 +12,6 @@ what the two were when the block last passed the critical rotation. Symbols and 
 import math
 
 from analytic.kernels.closed_form import is_lost, turning_rotation, work_to
-from analytic.kernels.compiled import inner
 from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import highest, next_root, value
 from analytic.kernels.rest import acceleration, strongest_between
@@ -25,7 +24,6 @@ REFINED = 1e-14
 """Part of the friction ratio below which a better one changes nothing."""
 
 
-@inner
 def forces(law: Law, side: float, a: float, y: float, v: float) -> tuple[float, float]:
     """Return (normal, horizontal) contact force over weight of the exact model.
 
@@ -47,21 +45,18 @@ def forces(law: Law, side: float, a: float, y: float, v: float) -> tuple[float, 
     return normal, horizontal
 
 
-@inner
 def keep(limits: FloatArray, normal: float, horizontal: float) -> None:
     """Keep the smallest normal force and the largest friction ratio in limits[0], limits[1]."""
     limits[0] = min(limits[0], normal)
     limits[1] = max(limits[1], abs(horizontal) / normal if normal > 0.0 else math.inf)
 
 
-@inner
 def watch(limits: FloatArray, law: Law, side: float, a: float, y: float, v: float) -> None:
     """Watch one state of a block."""
     normal, horizontal = forces(law, side, a, y, v)
     keep(limits, normal, horizontal)
 
 
-@inner
 def watch_rest(limits: FloatArray, segments: FloatArray, j: int, begin: float, end: float) -> None:
     """Watch a block at rest between two times: it needs the friction that carries it along.
 
@@ -75,7 +70,6 @@ def watch_rest(limits: FloatArray, segments: FloatArray, j: int, begin: float, e
     limits[1] = max(limits[1], strongest_between(segments, j, begin, end))
 
 
-@inner
 def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -> None:
     """Watch a train of impacts that is summed, from its begin to rest.
 
@@ -95,7 +89,6 @@ def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -
     watch(limits, law, -side, a, 0.0, 0.0)
 
 
-@inner
 def watch_to_passing(
     limits: FloatArray, law: Law, order: int, h: float, x: float, work: FloatArray
 ) -> None:
@@ -124,13 +117,11 @@ def watch_to_passing(
         limits[2], limits[3] = limits[0], limits[1]
 
 
-@inner
 def forget_fall(limits: FloatArray) -> None:
     """Go back to the limits when the block last passed the critical rotation."""
     limits[0], limits[1] = limits[2], limits[3]
 
 
-@inner
 def watch_step(limits: FloatArray, order: int, h: float, x: float, work: FloatArray) -> None:
     """Watch a part of a step.
 
@@ -153,26 +144,26 @@ def watch_step(limits: FloatArray, order: int, h: float, x: float, work: FloatAr
     expand_forces(degree, h, work[:4], normal, tangential, excess)
     for i in range(degree + 1):
         excess[i] = -normal[i]
-    least, _ = highest(excess, degree, 0, x, max(-normal[0], -limits[0]), spare)
+    least, _ = highest(excess, degree, 0, x, max(-normal[0], -float(limits[0])), spare)
     limits[0] = min(limits[0], -least)
     if limits[0] <= 0.0:
         limits[1] = math.inf
         return
-    limits[1] = max(limits[1], abs(tangential[0]) / normal[0])
+    most = max(float(limits[1]), abs(tangential[0]) / normal[0])
     for sign in (1.0, -1.0):
         for _ in range(MOST_REFINEMENTS):
             for i in range(degree + 1):
-                excess[i] = sign * tangential[i] - limits[1] * normal[i]
+                excess[i] = sign * tangential[i] - most * normal[i]
             _, where = highest(excess, degree, 0, x, 0.0, spare)
             if where < 0.0:
                 break
             ratio = sign * value(tangential, degree, where) / value(normal, degree, where)
-            if ratio <= limits[1] * (1.0 + REFINED):
+            if ratio <= most * (1.0 + REFINED):
                 break
-            limits[1] = ratio
+            most = ratio
+    limits[1] = most
 
 
-@inner
 def expand_forces(
     degree: int,
     h: float,
@@ -206,7 +197,6 @@ def expand_forces(
         scale *= h
 
 
-@inner
 def watch_free(limits: FloatArray, law: Law, y: float, v: float) -> None:
     """Watch free rocking to the rest, or until the block passes alpha for good.
 
@@ -234,7 +224,6 @@ def watch_free(limits: FloatArray, law: Law, y: float, v: float) -> None:
         watch(limits, law, 1.0, 0.0, 0.0, 0.0)
 
 
-@inner
 def watch_swing(limits: FloatArray, law: Law, energy: float, foot: float, top: float) -> None:
     """Watch a free block between the rotations `foot` and `top`; at 0 it has kinetic `energy`.
 

@@ -1,4 +1,4 @@
-"""What a compiled kernel is told of a model, and the arrays that it works on.
+"""What kernels are told of a model and a start, and what they write down on the way.
 
 In all kernels the rotation is folded to the side s = sign(theta) on which the block stands, -1 or
 1, so that y = s theta > 0. With z = alpha - y and the ground acceleration a (EQUATIONS.md,
@@ -20,9 +20,12 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
+UPLIFT, IMPACT, RESTED = 0.0, 1.0, 2.0
+"""Kinds of events."""
+
 
 class Law(NamedTuple):
-    """A model at one slenderness, as the compiled kernels take it.
+    """A model at one slenderness.
 
     linear, k, saddle and factor are those of `analytic.models`, factor being q; alpha is the
     slenderness [rad], onset the acceleration [g] that lifts the block, eta the velocity ratio at
@@ -39,15 +42,19 @@ class Law(NamedTuple):
 
 
 class Start(NamedTuple):
-    """A start as the kernels take it: the side that the block is on, y = s theta, and its rate.
+    """The side that a block is on at time zero, y = s theta, and its rate.
 
     The side is 0 at rest. Upright but turning, a block is on the side that it turns to; there is
-    no impact. Time is in units of 1/p.
+    no impact.
     """
 
     side: float
     y: float
     v: float
+
+
+UPRIGHT = Start(0.0, 0.0, 0.0)
+"""A block at rest on its base."""
 
 
 class State(NamedTuple):
@@ -64,5 +71,33 @@ class State(NamedTuple):
     v: float
 
 
-UPRIGHT = Start(0.0, 0.0, 0.0)
-"""A block at rest on its base."""
+class Notes(NamedTuple):
+    """What to write down on the way; each array may be empty.
+
+    times (n,) and samples (2, n): where to sample theta and its rate, and the samples. log
+    (capacity, 4): kind of the event, time, velocity before, velocity after. limits (4,): the
+    contact forces, as in `analytic.kernels.forces`.
+    """
+
+    times: FloatArray
+    samples: FloatArray
+    log: FloatArray
+    limits: FloatArray
+
+
+def note(log: FloatArray, n: int, kind: float, tau: float, before: float, after: float) -> int:
+    """Write an event into the log if it has room; return the number of events so far."""
+    if n < log.shape[0]:
+        log[n, 0] = kind
+        log[n, 1] = tau
+        log[n, 2] = before
+        log[n, 3] = after
+    return n + 1
+
+
+def sample_rest(notes: Notes, until: float, n: int) -> int:
+    """Sample a rest up to a time; return the number of samples so far."""
+    while n < len(notes.times) and notes.times[n] <= until:
+        notes.samples[0, n] = notes.samples[1, n] = 0.0
+        n += 1
+    return n

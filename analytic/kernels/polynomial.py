@@ -9,11 +9,6 @@ exactly one. Otherwise the interval is halved (de Casteljau) until one of the tw
 monotone, as the signs of their coefficients tell for less.
 """
 
-import math
-
-import numpy as np
-
-from analytic.kernels.compiled import constant, inner
 from analytic.kernels.law import FloatArray
 
 ORDER = 24
@@ -31,18 +26,7 @@ EDGE = 1e-12
 SAME_ROOT = 1e-15
 """Distance within which a root is not told from another."""
 
-inverse_binomial = constant(
-    np.array(
-        [
-            1.0 / math.comb(n, i) if i <= n else 0.0
-            for n in range(ORDER + 1)
-            for i in range(ORDER + 1)
-        ]
-    )
-)
 
-
-@inner
 def value(a: FloatArray, degree: int, x: float) -> float:
     """Return sum a[i] x^i.
 
@@ -58,7 +42,6 @@ def value(a: FloatArray, degree: int, x: float) -> float:
     return total
 
 
-@inner
 def slope(a: FloatArray, degree: int, x: float) -> float:
     """Return sum i a[i] x^(i-1).
 
@@ -73,7 +56,6 @@ def slope(a: FloatArray, degree: int, x: float) -> float:
     return total
 
 
-@inner
 def value_and_slope(a: FloatArray, degree: int, x: float) -> tuple[float, float]:
     """Return `value` and `slope`, in little more time than one of them."""
     total, rate = a[degree], 0.0
@@ -83,7 +65,6 @@ def value_and_slope(a: FloatArray, degree: int, x: float) -> tuple[float, float]
     return total, rate
 
 
-@inner
 def stretch(a: FloatArray, degree: int, h: float, d: FloatArray) -> None:
     """Write the coefficients of sum a[i] (h x)^i into d[0..degree].
 
@@ -100,7 +81,6 @@ def stretch(a: FloatArray, degree: int, h: float, d: FloatArray) -> None:
         scale *= h
 
 
-@inner
 def trend(d: FloatArray, degree: int, lead: int) -> int:
     """Return 1 where sum d[i] x^i is sure to rise on (0, 1], -1 where it falls, else 0.
 
@@ -121,18 +101,17 @@ def trend(d: FloatArray, degree: int, lead: int) -> int:
     return -1 if most < 0.0 else 0
 
 
-@inner
 def to_bernstein(a: FloatArray, degree: int, b: FloatArray) -> None:
     """Write the Bernstein coefficients of sum a[i] x^i on [0, 1] into `b`."""
-    row = degree * (ORDER + 1)
+    binomial = 1.0
     for i in range(degree + 1):
-        b[i] = a[i] * inverse_binomial(row + i)
+        b[i] = a[i] * (1.0 / binomial)
+        binomial = binomial * (degree - i) / (i + 1)
     for r in range(1, degree + 1):
         for i in range(degree, r - 1, -1):
             b[i] += b[i - 1]
 
 
-@inner
 def sign_changes(b: FloatArray, degree: int) -> int:
     """Count the sign changes in b[0..degree], zeros left out."""
     changes = 0
@@ -145,7 +124,6 @@ def sign_changes(b: FloatArray, degree: int) -> int:
     return changes
 
 
-@inner
 def last_sign(b: FloatArray, degree: int) -> float:
     """Return the last of b[0..degree] that is not zero; 0 where all are."""
     for i in range(degree, -1, -1):
@@ -154,7 +132,6 @@ def last_sign(b: FloatArray, degree: int) -> float:
     return 0.0
 
 
-@inner
 def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
     """Replace `b` by its left half and write its right half into `right`."""
     right[degree] = b[degree]
@@ -164,7 +141,6 @@ def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
         right[degree - r] = b[degree]
 
 
-@inner
 def bracketed_root(a: FloatArray, degree: int, low: float, high: float, rising: bool) -> float:
     """Return the only root of `a` in [low, high], by Newton's method kept in its bracket.
 
@@ -204,7 +180,6 @@ def bracketed_root(a: FloatArray, degree: int, low: float, high: float, rising: 
     return x
 
 
-@inner
 def only_root(a: FloatArray, degree: int, start: float) -> float:
     """Return the root of a monotone `a` in (start, 1], or 2 when there is none."""
     last = value(a, degree, 1.0)
@@ -214,7 +189,6 @@ def only_root(a: FloatArray, degree: int, start: float) -> float:
     return root if root > start + SAME_ROOT else 2.0
 
 
-@inner
 def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> float:
     """Return the first root of `a` in (start, 1], or 2 when there is none.
 
@@ -262,7 +236,6 @@ def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> flo
     return 2.0
 
 
-@inner
 def highest(
     d: FloatArray, order: int, lead: int, end: float, above: float, work: FloatArray
 ) -> tuple[float, float]:

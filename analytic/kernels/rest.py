@@ -4,11 +4,7 @@ Symbols and units are those of `analytic.kernels.law`.
 """
 
 import math
-from typing import Any
 
-import numpy as np
-
-from analytic.kernels.compiled import inner, instead
 from analytic.kernels.law import FloatArray, Law
 
 ANGLE_TOLERANCE = 1e-14
@@ -19,7 +15,6 @@ MOMENT = 1e-12
 """Part of a time that counts as nothing: an excess over the onset that lasts no longer."""
 
 
-@inner
 def ground(segments: FloatArray, j: int, tau: float) -> float:
     """Return the ground acceleration [g] on a segment; zero after the last.
 
@@ -32,7 +27,6 @@ def ground(segments: FloatArray, j: int, tau: float) -> float:
     return shaking(segments[j], tau) if j < len(segments) else 0.0
 
 
-@inner
 def shaking(segment: FloatArray, tau: float) -> float:
     """Return the ground acceleration [g] on a segment.
 
@@ -46,34 +40,6 @@ def shaking(segment: FloatArray, tau: float) -> float:
     return amplitude * math.sin(omega * t + phase) + offset + rate * t
 
 
-def then_still(segments: Any, end: float) -> Any:
-    """Return a ground motion with one segment more, on which nothing moves.
-
-    Parameters
-    ----------
-    segments : ndarray (m, 7)
-    end : float, time [1/p] at which the new segment ends
-
-    Returns
-    -------
-    ndarray (m + 1, 7), or in Python a list of rows
-    """
-    return [*segments, [segments[-1][1], end, 0.0, 0.0, 0.0, 0.0, 0.0]]
-
-
-@instead(then_still)
-def _then_still(segments: FloatArray, end: float) -> FloatArray:
-    count = len(segments)
-    longer = np.zeros((count + 1, 7))
-    # a slice would compile for seconds
-    for i in range(count):
-        for j in range(7):
-            longer[i][j] = segments[i][j]
-    longer[count][0], longer[count][1] = segments[count - 1][1], end
-    return longer
-
-
-@inner
 def segment_at(segments: FloatArray, j: int, tau: float) -> int:
     """Return on which segment a time is; their number after the last.
 
@@ -88,17 +54,6 @@ def segment_at(segments: FloatArray, j: int, tau: float) -> int:
     return j
 
 
-@inner
-def is_finite(segments: FloatArray) -> bool:
-    """Tell whether floating point holds a ground motion in the units of a block."""
-    for row in segments:
-        for number in row:
-            if not abs(number) < math.inf:
-                return False
-    return True
-
-
-@inner
 def strongest_between(segments: FloatArray, j: int, begin: float, end: float) -> float:
     """Return the largest abs(acceleration) of the ground between two times.
 
@@ -123,7 +78,6 @@ def strongest_between(segments: FloatArray, j: int, begin: float, end: float) ->
     return most
 
 
-@inner
 def acceleration(law: Law, side: float, a: float, y: float) -> float:
     """Return y'' [rad p^2] by the equation of motion (EQUATIONS.md, "From (1) and (2)").
 
@@ -139,7 +93,6 @@ def acceleration(law: Law, side: float, a: float, y: float) -> float:
     return -(math.sin(law.alpha - y) + side * a * math.cos(law.alpha - y))
 
 
-@inner
 def sine_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, bool]:
     """Return when abs(amplitude sin) first exceeds the onset from tau on, and whether smoothly."""
     start, _, amplitude, omega, phase, _, _ = segment
@@ -154,7 +107,6 @@ def sine_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, b
     return tau + max(wait, 0.0) / omega, True
 
 
-@inner
 def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, bool]:
     """Return when abs(offset + slope t) first exceeds the onset from tau on, whether smoothly.
 
@@ -174,7 +126,6 @@ def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, b
     return (time if time < end - moment else math.inf), True
 
 
-@inner
 def next_uplift(
     segments: FloatArray, j: int, tau: float, onset: float
 ) -> tuple[int, float, float, int]:
@@ -210,7 +161,6 @@ def next_uplift(
     return len(segments), math.inf, 0.0, 0
 
 
-@inner
 def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
     """Return how long [1/p] a block leaving the base goes on to rock; inf if it does not rest.
 
@@ -234,7 +184,6 @@ def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
     return 2.0 * v * (1.0 / here + law.eta / there) / (1.0 - law.eta * law.eta)
 
 
-@inner
 def comes_to_rest(law: Law, side: float, now: float, later: float, wait: float) -> bool:
     """Tell whether a train of impacts may be summed.
 
@@ -249,7 +198,6 @@ def comes_to_rest(law: Law, side: float, now: float, later: float, wait: float) 
     return change <= ZENO * min(abs(here), abs(there))
 
 
-@inner
 def side_after(law: Law, side: float, v: float, now: float, later: float, wait: float) -> float:
     """Return the side of a block that leaves its base at v after an impact; 0 where it rests.
 
@@ -268,7 +216,6 @@ def side_after(law: Law, side: float, v: float, now: float, later: float, wait: 
     return side
 
 
-@inner
 def after_impact(
     law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float
 ) -> tuple[float, float]:

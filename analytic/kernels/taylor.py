@@ -7,9 +7,6 @@ Symbols and units are those of `analytic.kernels.law`; the method and its error 
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from analytic.kernels.compiled import constant, inner
 from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import ORDER
 
@@ -19,10 +16,6 @@ LONGEST_STEP = 4.0
 
 TOLERANCE = 1e-16
 """Default truncation error of a step, relative to the rotation it covers."""
-
-
-part = constant(np.array([0.0, *(1.0 / i for i in range(1, ORDER + 1))]))
-"""1/i: where a division by a whole number would be waited for."""
 
 
 class Accuracy(NamedTuple):
@@ -43,7 +36,6 @@ def accuracy(tolerance: float) -> Accuracy:
     return Accuracy(min(max(order, LEAST_ORDER), ORDER), tolerance)
 
 
-@inner
 def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: FloatArray) -> None:
     """Write the series of f, side x ground acceleration [g], into f[0..order].
 
@@ -61,12 +53,11 @@ def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: 
     f[1] = side * amplitude * omega * math.cos(angle)
     square = omega * omega
     for i in range(2, order + 1):
-        f[i] = -square * part(i) * part(i - 1) * f[i - 2]
+        f[i] = -square * (1.0 / i) * (1.0 / (i - 1)) * f[i - 2]
     f[0] += side * (offset + slope * (tau - start))
     f[1] += side * slope
 
 
-@inner
 def expand_exact(law: Law, order: int, work: FloatArray) -> None:
     """Extend the series of y by the exact equation, y'' = -[sin z + f cos z], z = alpha - y.
 
@@ -96,12 +87,11 @@ def expand_exact(law: Law, order: int, work: FloatArray) -> None:
             s += rate[1] * cosine[i]
             c += rate[1] * sine[i]
             forced += f[i] * cosine[0]
-            y[i + 2] = -(sine[i] + (forced + f[0] * cosine[i])) * part(i + 1) * part(i + 2)
-        sine[i + 1] = -(s + rate[i + 1] * cosine[0]) * part(i + 1)
-        cosine[i + 1] = (c + rate[i + 1] * sine[0]) * part(i + 1)
+            y[i + 2] = -(sine[i] + (forced + f[0] * cosine[i])) * (1.0 / (i + 1)) * (1.0 / (i + 2))
+        sine[i + 1] = -(s + rate[i + 1] * cosine[0]) * (1.0 / (i + 1))
+        cosine[i + 1] = (c + rate[i + 1] * sine[0]) * (1.0 / (i + 1))
 
 
-@inner
 def expand_linear(law: Law, order: int, f: FloatArray, y: FloatArray) -> None:
     """Extend a series by a linear model, y'' = -k^2 [saddle - y + q f].
 
@@ -113,16 +103,14 @@ def expand_linear(law: Law, order: int, f: FloatArray, y: FloatArray) -> None:
     y : ndarray (>= order + 1,), of which the first three coefficients are known
     """
     for i in range(1, order - 1):
-        y[i + 2] = law.k * law.k * (y[i] - law.factor * f[i]) * part(i + 1) * part(i + 2)
+        y[i + 2] = law.k * law.k * (y[i] - law.factor * f[i]) * (1.0 / (i + 1)) * (1.0 / (i + 2))
 
 
-@inner
 def logarithm(x: float) -> float:
     """Return ln(x), of zero, too."""
     return math.log(x) if x != 0.0 else -math.inf
 
 
-@inner
 def trusted_step(y: FloatArray, accuracy: Accuracy) -> float:
     """Return the step [1/p] over which a series is accurate, at most LONGEST_STEP.
 

@@ -13,7 +13,8 @@ from analytic.block import RigidBlock
 from analytic.conditioning import scaled
 from analytic.record import Record
 from analytic.response import Outcome
-from analytic.simulate import simulate, strongest
+from analytic.simulate import simulate
+from analytic.start import strongest
 from studies.kit.store import usable_cores
 
 APART = 0.01

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from analytic.record import Record
-from analytic.simulate import strongest
+from analytic.start import strongest
 from studies.cases.accelerograms import baseline_note
 from studies.compare.rows import compare, records, window_of
 from studies.compare.text import motion_name, table_text

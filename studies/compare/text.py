@@ -8,8 +8,8 @@ import pandas as pd
 
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
-from analytic.simulate import strongest
 from analytic.slide import SlidingBlock
+from analytic.start import strongest
 from engines.scene import System
 from studies.cases.paper import PULSES
 from studies.kit.jobs import Question, Row

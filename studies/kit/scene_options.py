@@ -13,9 +13,8 @@ from analytic.checks import LEAST, MOST
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
-from analytic.simulate import strongest
 from analytic.slide import SlidingBlock
-from analytic.start import LEAST_TILT
+from analytic.start import LEAST_TILT, strongest
 from engines.scene import System
 from studies.cases.accelerograms import Baseline, read_record
 from studies.cases.paper import PULSES

@@ -12,14 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from analytic import MODELS
 from analytic.block import RigidBlock
 from analytic.kernels.excursions import BROKEN
-from analytic.kernels.rest import after_impact, is_finite, next_uplift
+from analytic.kernels.rest import after_impact, next_uplift
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
-from analytic.simulate import FAILURES, check_window, scaled_segments
-from analytic.start import REST, folded
+from analytic.simulate import FAILURES
+from analytic.start import REST, pose
 
 MOST_EXCURSIONS = 2000
 
@@ -80,19 +79,17 @@ class _March:
         self.solve_ivp: Any = solve_ivp
         self.method, self.rtol = method, rtol
         self.p, self.alpha = block.p, block.alpha
-        self.law = MODELS["exact"].law(block.alpha, block.restitution)
-        until, self.times = check_window(motion, duration, times)
-        self.start = folded(block, self.law, motion, start, self.times)
-        self.segments = scaled_segments(block, motion)
+        posed = pose(block, motion, "exact", start, duration, times)
+        self.law, self.start, self.segments, until, self.times = posed
         self.moving = float(self.segments[-1, 1])
-        self.until = math.inf if duration is None else until * block.p
+        self.until = math.inf if duration is None else until
         self.samples = np.zeros((2, self.times.size))
         self.recorded, self.end = times is not None, self.until
         self.impacts: list[Impact] = []
         self.peak, self.evaluations, self.message = self.start.y, 0, ""
 
     def run(self) -> Outcome:
-        if not is_finite(self.segments):
+        if not np.all(np.isfinite(self.segments)):
             self.message = FAILURES[BROKEN].message
             return Outcome.FAILED
         side, y, v = self.start

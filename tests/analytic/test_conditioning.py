@@ -24,6 +24,7 @@ from analytic import (
     simulate,
 )
 from analytic.block import housner_restitution
+from analytic.conditioning import NUDGE
 from studies.cases.paper import sweep_cases
 
 NEAR_ONSET = RigidBlock(width=1.5256313519414122, height=9.174363250019729)
@@ -82,8 +83,9 @@ def test_they_are_the_slopes_of_a_peak_after_any_start(model, start):
         for number, moved in zip(conditioning(BLOCK, motion, model, start), MOVED, strict=True):
             nudge = 1e-5 / math.sqrt(1.0 + abs(number))
             slope = difference(lambda scale, moved=moved: peak(**{moved: scale}), nudge)
-            # a difference of fourth order, and the rounding of peaks over its nudge
-            assert number == pytest.approx(slope, rel=1e-7, abs=1e-9)
+            # against a difference of fourth order: ours errs by (kappa nudge)^2 and rounding
+            curved = 50.0 * (number * NUDGE) ** 2
+            assert number == pytest.approx(slope, rel=1e-6 + curved, abs=1e-9)
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -199,5 +201,5 @@ def test_arrays_and_single_responses_agree(model):
         assert response.outcome is outcomes[at]
         assert response.peak_ratio == pytest.approx(peaks[at], rel=1e-9)
         one = [float(number[at]) for number in numbers]
-        assert conditioning(block, motion, model) == pytest.approx(one, rel=1e-9, nan_ok=True)
+        assert conditioning(block, motion, model) == pytest.approx(one, rel=1e-8, nan_ok=True)
         assert sensitivity(block, motion, model) == pytest.approx(moved[at], rel=1e-5)

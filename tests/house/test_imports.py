@@ -108,7 +108,7 @@ ANSWERS = {
     "analytic.criteria": "from analytic.criteria import quarter_period",
     "analytic.conditioning": "from analytic import conditioning",
     "analytic.kernels.excursions": "from analytic.kernels.excursions import march",
-    "analytic.kernels.swings": "from analytic.kernels import swings",
+    "analytic.kernels.forces": "from analytic.kernels import forces",
     "analytic.models": "def later():\n    from analytic.models import MODELS",
 }
 """The modules that know the answer, and ways for an adapter to come to one."""

@@ -4,6 +4,7 @@ import math
 import subprocess
 import sys
 from dataclasses import replace
+from functools import partial
 from itertools import islice, product
 
 import numpy as np
@@ -22,38 +23,20 @@ from analytic import (
     sensitivity,
     simulate,
 )
-from analytic.kernels import compiled
+from analytic.kernels import forms
 from analytic.steppers import METHODS
 from studies.cases.drawn import draw
 from studies.cases.paper import sweep_cases
 
 
 @pytest.fixture
-def purse(monkeypatch):
-    """Let every kernel be interpreted, or none, whatever was before."""
-
-    def use(interpret):
-        monkeypatch.setattr(compiled.Purse, "shut", not interpret)
-        monkeypatch.setattr(compiled.Purse, "open", property(lambda _: interpret))
-        monkeypatch.setattr(compiled.Purse, "spend", lambda _: None)
-
-    return use
-
-
-@pytest.fixture
-def both(monkeypatch, purse):
-    """Return what an action returns, interpreted and compiled."""
-
-    def interpret(kernel, *arguments):
-        with compiled.interpreting(compiled.Purse(compiled.SOURCES, 10**9, 0)):
-            return kernel.py_func(*arguments)
+def both(monkeypatch):
+    """Return what an action returns, in Python and compiled."""
 
     def in_both(action):
         answers = []
-        for form in (interpret, compiled.Kernel.run):
-            purse(form is interpret)
-            # what was compiled once is compiled from then on, but not here
-            monkeypatch.setattr(compiled.Kernel, "__call__", form)
+        for form in (forms.Kernel.python, forms.Kernel.compiled):
+            monkeypatch.setattr(forms.Kernel, "few", lambda it, *_, form=form: partial(form, it))
             answers.append(action())
         return answers
 
@@ -138,48 +121,38 @@ def test_answers_are_the_same(answers, model, both):
     assert interpreted == once_compiled
 
 
-SPENDING = """
+AGAIN = """
 import sys
-import numpy as np
-from analytic import Record, RigidBlock, simulate
-from analytic.kernels import compiled
-from analytic.steppers import METHODS
+from analytic import RigidBlock, SinePulse, simulate
+from analytic.kernels import forms
 
-block = RigidBlock(width=0.5, height=1.5)
-record = Record(dt=0.01, samples=4.0 * np.sin(0.3 * np.arange(300)))
-few = simulate(block, record)
+block, pulse = RigidBlock(width=0.5, height=1.5), SinePulse(amplitude=4.0, omega=6.0)
+few = [simulate(block, pulse) for _ in range(forms.FEW_CASES)]
 assert "numba" not in sys.modules
-for _ in range(200):
-    many = simulate(block, record)
-    if "numba" in sys.modules:
-        break
-else:
-    raise SystemExit("nothing was compiled")
-again = simulate(block, record)
-assert few.peak_ratio == many.peak_ratio == again.peak_ratio and few.impacts == again.impacts
-print(few.steps)
+many = simulate(block, pulse)
+assert "numba" in sys.modules
+assert few[0].peak_ratio == many.peak_ratio and few[0].impacts == many.impacts
 """
 
 
 def test_what_is_asked_again_and_again_is_compiled():
-    """A case of some 300 steps uses up the steps that are interpreted in some dozens of calls."""
-    done = subprocess.run([sys.executable, "-c", SPENDING], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", AGAIN], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    assert int(done.stdout) >= 300
 
 
-def test_what_python_refuses_is_left_to_compiled_code(purse):
-    purse(True)
-
-    @compiled.kernel
+def test_what_python_refuses_is_left_to_compiled_code():
     def quotient(x, y):
         return x / y
 
-    assert quotient(1.0, 0.0) == math.inf
-    assert quotient(np.float64(1.0), np.float64(0.0)) == math.inf
+    kernel = forms.Kernel(quotient)
+    assert kernel.python(1.0, 0.0) == math.inf
+    assert kernel.python(np.float64(1.0), np.float64(0.0)) == math.inf
 
 
-def test_few_cases_are_interpreted_and_many_are_not():
-    kernel = compiled.Kernel(abs, compiled.SOURCES, None)
-    assert compiled.form_for(1, kernel) is kernel
-    assert compiled.form_for(10_000, kernel) == kernel.run
+def test_how_many_and_how_long_decide(monkeypatch):
+    kernel = forms.Kernel(abs)
+    for cases, steps, form in ((1, 10, "python"), (10_000, 10, "compiled"), (1, 1e6, "compiled")):
+        monkeypatch.setattr(forms.Kernel, "cases", 0)
+        assert kernel.few(cases, steps) == getattr(kernel, form)
+    forms.compile_all()
+    assert kernel.few(1, 1) == kernel.compiled

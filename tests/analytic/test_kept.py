@@ -11,36 +11,33 @@ import numba
 import pytest
 from numba.core import caching
 
-from analytic.kernels import compiled, kept
+from analytic.kernels import forms
 
 KERNELS = {
     "__init__.py": "",
     "inner/__init__.py": "",
     "kernels/__init__.py": "",
     "inner/law.py": """
-from analytic.kernels.compiled import kernel
-
-@kernel
 def law(x):
     return x + 1.0
 """,
     "steps.py": """
-from analytic.kernels.compiled import kernel
+from analytic.kernels.forms import Kernel
 from analytic.inner.law import law
 
-@kernel
 def steps(x):
     return 10.0 * law(x)
+
+STEPS = Kernel(steps)
 """,
 }
 PLACES = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME", "TMPDIR")
 PROGRAM = """
-from analytic import steps
-from analytic.kernels import compiled, kept
-compiled.compile_all()
-value = steps.steps(1.0)
-hits = sum(steps.steps.compiled.stats.cache_hits.values())
-print(value, hits, kept.kept_in(compiled.SOURCES))
+from analytic.steps import STEPS
+from analytic.kernels import forms
+value = STEPS.compiled(1.0)
+hits = sum(STEPS._compiled.stats.cache_hits.values())
+print(value, hits, forms.kept_in(forms.SOURCES))
 """
 
 
@@ -51,8 +48,7 @@ def package(tmp_path):
         path = tmp_path / "package" / "analytic" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    for module in (compiled, kept):
-        shutil.copy(module.__file__, tmp_path / "package" / "analytic" / "kernels")
+    shutil.copy(forms.__file__, tmp_path / "package" / "analytic" / "kernels")
     return tmp_path / "package"
 
 
@@ -111,32 +107,30 @@ def test_kernels_run_where_nothing_can_be_written(package, tmp_path):
     assert (value, hit, str(folder)) == (20.0, False, "None")
 
 
-def test_a_folder_is_named_by_all_sources(package, tmp_path):
-    sources = package / "analytic"
+def test_a_folder_is_named_by_all_sources(package, tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept"))
 
     def name():
-        return kept.folder_for(sources, [tmp_path / "kept"]).name
+        return forms.kept_in.__wrapped__(package / "analytic").name
 
     names = [name()]
     for path in ("steps.py", "inner/law.py", "inner/more.py"):
-        with (sources / path).open("a") as file:
+        with (package / "analytic" / path).open("a") as file:
             file.write("\n# edited")
         names.append(name())
     assert len(set(names)) == 4
-    assert kept.folder_for(sources, [Path("/dev/null"), Path("/proc/none")]) is None
 
 
 def test_other_kernels_of_the_user_are_kept_where_they_were():
     before = numba.config.CACHE_DIR
 
-    @compiled.kernel
     def twice(x):
         return 2.0 * x
 
-    assert twice.run(2.0) == 4.0
+    kernel = forms.Kernel(twice)
+    assert kernel.compiled(2.0) == 4.0
     assert before == numba.config.CACHE_DIR
-    folder = str(kept.kept_in(compiled.SOURCES))
-    assert twice.compiled.stats.cache_path.startswith(folder)
+    assert kernel._compiled.stats.cache_path.startswith(str(forms.kept_in(forms.SOURCES)))
 
 
 def test_a_kernel_runs_where_the_disk_is_full(monkeypatch):
@@ -145,33 +139,24 @@ def test_a_kernel_runs_where_the_disk_is_full(monkeypatch):
 
     monkeypatch.setattr(caching.IndexDataCacheFile, "save", save)
 
-    @compiled.kernel
     def thrice(x):
         return 3.0 * x
 
-    assert thrice.run(2.0) == 6.0
-    assert thrice.run(3.0) == 9.0
+    kernel = forms.Kernel(thrice)
+    assert kernel.compiled(2.0) == 6.0
+    assert kernel.compiled(3.0) == 9.0
+
+
+def half(x):
+    return 0.5 * x
 
 
 def test_who_waits_is_told_once_and_only_where_something_is_compiled(monkeypatch, tmp_path):
     told = []
-    monkeypatch.setattr(compiled.Kernel, "tell", told.append)
-    monkeypatch.setattr(compiled, "kept_in", lambda _: tmp_path)
+    monkeypatch.setattr(forms, "kept_in", lambda _: tmp_path)
 
-    def again():
-        @compiled.kernel
-        def half(x):
-            return 0.5 * x
-
-        @compiled.kernel
-        def quarter(x):
-            return 0.5 * half(x)
-
-        return quarter
-
-    assert again().run(2.0) == 0.5
-    assert len(told) == 1
-    told.clear()
-    monkeypatch.setattr(compiled.Kernel, "tell", told.append)
-    assert again().run(2.0) == 0.5
-    assert not told
+    for count in (1, 0):
+        monkeypatch.setattr(forms.Kernel, "tell", told.append)
+        assert forms.Kernel(half).compiled(2.0) == 1.0
+        assert len(told) == count
+        told.clear()

@@ -1,0 +1,172 @@
+"""Kernels in two forms, which agree to the bit: Python for a few short cases, compiled for more.
+
+A kernel, and all that it calls, is a plain function of numbers, named tuples and arrays. To load
+what was compiled takes as long as some thousand steps in Python, and to compile it some 20 s, once
+for each version of the sources. So how many cases there are and how long they take decide
+beforehand which form is called.
+"""
+
+import errno
+import hashlib
+import inspect
+import os
+import stat
+import tempfile
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from shutil import rmtree
+from typing import Any, ClassVar, Generic, ParamSpec, TypeVar
+
+import numpy as np
+
+Given = ParamSpec("Given")
+Answer = TypeVar("Answer")
+
+SOURCES = Path(__file__).parents[__name__.count(".") - 1]
+"""The folder of the package that holds the reference's kernels and all that they call."""
+FEW_CASES, FEW_STEPS = 200, 3000
+"""Cases of a process, and steps of one, up to which Python takes less time."""
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
+"""Why a folder that could be written no longer can."""
+PLAIN = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
+"""How what kernels call is compiled: it makes no array, and so counts no references to any."""
+
+_compiling = threading.RLock()
+_known = set[Callable[..., Any]]()
+"""What compiled code may call."""
+
+
+class Kernel(Generic[Given, Answer]):
+    """A function in both forms.
+
+    Of arrays that it is given it may change those in named tuples alone: Python works on lists in
+    place of all others.
+    """
+
+    tell: ClassVar[Callable[[str], None] | None] = None
+    """Who is told, the first time, that compiling begins."""
+    cases: ClassVar[float] = 0
+    """Cases that this process has solved."""
+
+    def __init__(self, function: Callable[Given, Answer]) -> None:
+        self.function = function
+        self._compiled: Callable[Given, Answer] | None = None
+
+    def few(self, cases: int, steps: float) -> Callable[Given, Answer]:
+        """Return the form for so many more cases of so many steps each."""
+        Kernel.cases += cases
+        return self.python if Kernel.cases <= FEW_CASES and steps <= FEW_STEPS else self.compiled
+
+    def python(self, *given: Given.args, **named: Given.kwargs) -> Answer:
+        """Answer in Python; where that raises, compiled code goes on with inf or nan."""
+        lists: Any = [each.tolist() if isinstance(each, np.ndarray) else each for each in given]
+        try:
+            with np.errstate(divide="raise", over="raise", invalid="raise"):
+                return self.function(*lists, **named)
+        except (ArithmeticError, ValueError):
+            return self.compiled(*given, **named)
+
+    def compiled(self, *given: Given.args, **named: Given.kwargs) -> Answer:
+        """Answer by compiled code; where it cannot be kept, it is compiled without."""
+        if self._compiled is None:
+            self._compiled = compiled(self.function, kept_in(SOURCES))
+        try:
+            return self._compiled(*given, **named)
+        except OSError as error:
+            if error.errno not in FULL:
+                raise
+            self._compiled = compiled(self.function, None)
+            return self._compiled(*given, **named)
+
+
+def compile_all() -> None:
+    """Interpret nothing more in this process: there are many cases to come."""
+    Kernel.cases = np.inf
+
+
+def compiled(function: Callable[Given, Answer], folder: Path | None) -> Callable[Given, Answer]:
+    """Return a function compiled with all that it calls, kept in a folder if there is one.
+
+    Other threads of Python run while it does. No operation is merged with another: whether it is
+    would depend on what the compiler inlines, and the last digit on which process compiled.
+    """
+    import numba
+
+    known: Any = numba.config
+    tell, name = Kernel.tell, f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}"
+    if tell is not None and not (folder and any(folder.rglob(f"{name}-*.nbi"))):
+        Kernel.tell = None
+        tell("compiling, once: some 10 to 40 s")
+    with _compiling:
+        _introduce(function)
+        before = known.CACHE_DIR
+        known.CACHE_DIR = str(folder or "")  # numba asks for it where it decorates
+        try:
+            compile_ = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")
+            made: Any = compile_(function)
+        finally:
+            known.CACHE_DIR = before
+    return made
+
+
+def _introduce(function: Callable[..., Any]) -> None:
+    """Let compiled code call what a function calls."""
+    from numba.extending import register_jitable
+
+    for name in function.__code__.co_names:
+        called = function.__globals__.get(name)
+        if inspect.isfunction(called) and called not in _known:
+            _known.add(called)
+            _introduce(called)
+            register_jitable(**PLAIN)(called)
+
+
+def are_compiled(sources: Path) -> bool:
+    """Return whether any kernel in a folder was compiled before, by this process or another one."""
+    folder = kept_in(sources)
+    return folder is not None and any(folder.rglob("*.nbi"))
+
+
+@cache
+def kept_in(sources: Path) -> Path | None:
+    """Return where the compiled kernels of a package are kept; None if no place can be written.
+
+    The folder is named by what all modules of the package say: numba sees a change of a kernel's
+    own module, not of a function that it calls in another one.
+    """
+    digest = hashlib.sha256(Path(__file__).read_bytes())
+    for path in sorted(sources.rglob("*.py")):
+        digest.update(f"{path.relative_to(sources)}\0".encode() + path.read_bytes() + b"\0")
+    name = f"kernels-{digest.hexdigest()[:16]}"
+    for place in _places(sources):
+        with suppress(OSError):
+            (place / name).mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=place / name).close()
+            if place.parent == sources:
+                for old in place.glob("kernels-*"):
+                    if old.name != name:
+                        rmtree(old, ignore_errors=True)
+            return place / name
+    return None
+
+
+def _places(sources: Path) -> Iterator[Path]:
+    """Yield where compiled kernels may be kept: as numba would, then where temporary files are."""
+    if chosen := os.environ.get("NUMBA_CACHE_DIR"):
+        yield Path(chosen)
+    yield sources / "__pycache__"
+    with suppress(RuntimeError):
+        yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rocking"
+    private = Path(tempfile.gettempdir(), f"rocking-{os.getuid()}")
+    with suppress(OSError):
+        private.mkdir(mode=0o700, exist_ok=True)
+        found = private.lstat()  # nobody else may write there: what lies in it will be run
+        if (
+            stat.S_ISDIR(found.st_mode)
+            and found.st_uid == os.getuid()
+            and not found.st_mode & 0o077
+        ):
+            yield private
