@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 
 from studies import histories
-from studies.__main__ import run as rocking
 from studies.kit.run import run
 from studies.measures.claims import Finding, claim, table_of
 
@@ -69,22 +68,3 @@ def test_a_claim_needs_its_sources():
     assert [item.holds for item in found] == [False, None, True]
     assert "source" not in table_of(found)
     assert list(table_of([*found, Finding("", True, "", "rk4")])["source"]) == ["", "", "", "rk4"]
-
-
-@pytest.mark.parametrize(
-    ("words", "named"),
-    [
-        ("--figure 3", "2, 4, 5"),
-        ("--figure 2 2", "twice"),
-        ("--figure", "empty"),
-        ("--sources exakt", "exakt"),
-        ("--sources", "--sources"),
-        ("--sources exact exact", "twice"),
-        ("--quick", "--quick"),
-        ("--jobs 0", "--jobs"),
-    ],
-)
-def test_refused(words, named, tmp_path, capsys):
-    assert rocking(["histories", "--out", str(tmp_path / "new"), *words.split()]) == 2
-    assert named in capsys.readouterr().err
-    assert not (tmp_path / "new").exists()

@@ -8,7 +8,6 @@ import pytest
 
 from analytic import MODELS, peak_ratios
 from studies import linearizations
-from studies.__main__ import run as rocking
 from studies.kit.run import run
 from studies.linearizations import NAMED, VARIANTS, errors_on, grid
 from studies.measures.differences import posed_cases
@@ -75,9 +74,3 @@ def test_tables_follow_the_rows(monkeypatch):
         for row in both.loc[both["changed"] == changed, "by_aspect"]:
             row[0][name] = row[1][name] = row[2][name] = value
     assert linearizations.tabulate(both)["findings"]["holds"].tolist() == [False, False, False]
-
-
-@pytest.mark.parametrize("words", ["--sources exact", "--quick", "--jobs 0", "--time-limit x"])
-def test_refused(words, tmp_path, capsys):
-    assert rocking(["linearizations", "--out", str(tmp_path / "new"), *words.split()]) == 2
-    assert words.partition(" ")[0] in capsys.readouterr().err

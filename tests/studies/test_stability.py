@@ -16,7 +16,7 @@ from studies.drawing.stability import MARKS
 from studies.kit.run import lost_row, run
 from studies.kit.study import Study
 from studies.measures.energy import energy, growth
-from studies.measures.verdicts import Verdict, invalidity, judge
+from studies.measures.verdicts import Verdict, judge
 from studies.sources.registry import resolve
 from studies.stability import FACTOR, LARGEST_STEP, SMALLEST_STEP, largest_good
 
@@ -39,7 +39,6 @@ def rows_of(table, case, *sources):
 def test_cases_have_names_of_their_own_and_quick_ones_are_among_them():
     names = [case.name for case in extremes(False)]
     assert len(names) == len(set(names))
-    assert [case.name for case in extremes(True)] == [name for name in names if name in QUICK]
     assert len(extremes(True)) == len(QUICK)
 
 
@@ -93,6 +92,8 @@ DOUBLE = {"outcome": Outcome.ROCKED, "peak_ratio": 0.2}
         ("", "mujoco", AT_REST, Verdict.REST),
         ("onset + 1e-6", "mujoco", AT_REST, Verdict.UNSEEN),
         ("60 s at rest", "mujoco", DOUBLE, Verdict.REST),
+        ("friction 0.3", "mujoco", DOUBLE, Verdict.INVALID),
+        ("friction 1", "mujoco", DOUBLE, Verdict.OFF),
         # the pivot lifts off: not the engine's fault, but a solver solves the same equation
         ("H/B 0.8, violent", "mujoco", DOUBLE, Verdict.INVALID),
         ("H/B 0.8, violent", "rk4", DOUBLE, Verdict.OFF),
@@ -119,12 +120,6 @@ def test_energy_that_grows_is_seen_and_one_that_falls_is_not():
         kept = energy(block, moved.history)[31:169]
         expected = 1.0 - kept[0] / kept[-1] if grown else 0.0
         assert growth(block, motion, moved) == pytest.approx(expected, abs=2e-3)
-
-
-def test_the_reference_holds_only_with_enough_friction():
-    assert "slides" in invalidity(named("friction 0.3"), "mujoco")
-    assert invalidity(named("friction 1"), "mujoco") == ""
-    assert invalidity(named("friction 0.3"), "rk4") == ""
 
 
 @pytest.mark.parametrize("limit", [2e-4, 3e-3, 0.011, 0.3])
@@ -184,8 +179,8 @@ def test_only_a_source_without_any_result_is_needed():
 
 def test_every_verdict_has_a_mark_of_its_own():
     assert set(MARKS) == set(Verdict)
-    for looks in ({mark[0] for mark in MARKS.values()}, {mark[1] for mark in MARKS.values()}):
-        assert len(looks) == len(Verdict)
+    colours, symbols, *_ = zip(*MARKS.values(), strict=True)
+    assert len(set(colours)) == len(set(symbols)) == len(Verdict)
 
 
 @pytest.mark.parametrize(("words", "limit"), [("--jobs 2", 600.0), ("--time-limit 5", 5.0)])
