@@ -317,8 +317,11 @@ def scaled(name: str, unit: float) -> str:
 
 
 def broken(line: str) -> list[str]:
-    """Return a line as several where it is too long, each break after a comma."""
-    text = re.sub(r"(?<!,) ", "\x04", line)
+    """Return a line as several where it is too long, each break after a comma of a call."""
+    names, equals, call = line.partition(" = ")
+    if "(" in names:  # no assignment
+        names, equals, call = "", "", line
+    text = f"{names}{equals}".replace(" ", "\x04") + re.sub(r"(?<!,) ", "\x04", call)
     parts = wrap(
         text, WIDTH, subsequent_indent=" " * 4, break_long_words=False, break_on_hyphens=False
     )

@@ -6,7 +6,6 @@ import pytest
 from uses import HERE, SHAKEN, error, rocked
 
 from analytic.response import Reason
-from engines.dart.build import touching
 
 pytestmark = pytest.mark.skipif("dart" not in HERE, reason="dartpy is not installed")
 
@@ -26,18 +25,6 @@ def test_friction_that_has_no_mass_is_left_to_another_solver():
 def test_a_mass_brings_no_inertia():
     """Set by its mass alone, a block keeps the moments of inertia of 1 kg m2 and hardly rocks."""
     assert peak(preset="naive", settings={"exact_inertia": False}) < 0.1 * peak(preset="naive")
-
-
-def test_of_a_pair_the_smaller_friction_counts(monkeypatch):
-    floor = iter([0.05])  # it is made first
-
-    def smooth(body, shape, at, friction):
-        return touching(body, shape, at, next(floor, friction))
-
-    monkeypatch.setattr("engines.dart.build.touching", smooth)
-    response = rocked("dart")
-    assert response.reason is Reason.FAULT
-    assert "friction was set to 10.0 but reads 0.05" in response.message
 
 
 def test_corrections_go_by_the_unit_of_length():

@@ -1,0 +1,534 @@
+"""DART: settings, presets, and how a scene is built, set, stepped and read back.
+
+The library corrects positions by a velocity of at most 1e-3 units of length a second, and nothing
+in Python sets that: a tuned preset counts in hundredths of a millimetre, so that its contacts are
+left where they are. In steps that land a beam slides out of the plane as the base does, or friction
+between two bodies in the plane would have no mass there, and the library would answer by another
+solver; the free corners of what rests on others reach out in the steps of an impact, and are drawn
+in before it, so that none comes early.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from engines.declaration import (
+    BEST,
+    BOTH,
+    DEFAULT,
+    UNMOVED_BASE,
+    Citation,
+    Engine,
+    Factor,
+    Help,
+    Preset,
+    Rule,
+    Stepping,
+    factor,
+    level,
+    moving_base,
+)
+from engines.parts import (
+    Point,
+    counted,
+    fall,
+    floor_half_size,
+    half_size,
+    imported,
+    touching_spheres,
+)
+from engines.parts.reflection import returned
+from engines.run.export import Notes, Script, scaled
+from engines.scene import Scene
+from engines.settings import check, disagreement, one_of, setting
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
+
+DETECTORS = {
+    "DART": "DARTCollisionDetector",
+    "FCL": "FCLCollisionDetector",
+    "BULLET": "BulletCollisionDetector",
+    "ODE": "OdeCollisionDetector",
+}
+"""The library's names of its collision detectors -> their classes, which every release has."""
+
+SOLVERS = {
+    "Dantzig": "DantzigBoxedLcpSolver",
+    "NSGS": "NsgsFrictionSolver",
+    "FBF": "FbfFrictionSolver",
+}
+"""Names of solvers of contact forces -> their classes."""
+
+IN_PLANE, IN_SPACE = (1, 0, 2), (3, 5, 1)
+"""Where x, z and theta stand among the coordinates of a joint in the plane, or of a free one."""
+
+FREE = {ContactPhase.APPROACH: -1.0, ContactPhase.STRIKE: 1.0}
+"""By how many margins the free corners of what rests on others are lowered in a step."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DartSettings:
+    """Settings of DART, by default its own; None leaves a setting to the library.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", or "corners": small spheres where the corners at the base are.
+    planar : bool
+        Give the block a planar joint, and two corners in the middle plane, instead of a free joint
+        and four corners at the edges.
+    aside : bool
+        Let the base slide out of the plane. Else nothing moves a block in the plane that way, its
+        friction there has no mass, the Dantzig solver fails on it, and the library takes what its
+        other solver makes of the last step's impulses in a few iterations, without a word.
+    friction : float
+        Coefficient between block and base, of which the library takes the smaller; its own is 1.
+    exact_inertia : bool
+        Set the moments of inertia, too: the mass alone leaves them at 1 kg m2.
+    collision : str or None
+        Collision detector, one of `DETECTORS`; by default FCL. By "DART" contacts are known again
+        by where bodies are in memory: where Dantzig's solver fails, answers depend on that.
+    solver : str or None
+        Of contact forces, one of `SOLVERS`; by default Dantzig's, which bounds friction by normal
+        forces that it solves for without it: while a block turns about a corner that bound is up to
+        a third too low.
+    split_impulse : bool or None
+        Correct penetration without giving it a velocity.
+    sleeping : bool or None
+        Whether a block that has hardly moved for half a second is no longer simulated.
+    unit : float
+        Units of length in a metre. The library corrects a penetration by 1 % of it a step, up to
+        1e-3 units/s.
+    corner_radius : float
+        Radius of the corner spheres over the width.
+    margin : float or None
+        Depth over (alpha p dt)^2 H by which the corner about which the block turns is lowered, so
+        that it stays in contact.
+    reflection : bool
+        Give that corner's velocity back to it, by the velocity of the base; not in the steps of an
+        impact and the first one after it.
+    floor : str
+        How a base that moves is moved: by the "velocity" of its joint, or by a "servo" that gives
+        it one, both of which lead it by the library; by "both" its place and its velocity; by
+        "position" alone.
+    restitution : float or None
+        Coefficient of the block.
+    base_restitution : float
+        That of the base, with which the library multiplies it.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    planar: bool = False
+    aside: bool = False
+    friction: float = setting(1.0, least=0.0)
+    exact_inertia: bool = True
+    collision: str | None = setting(names=tuple(DETECTORS))
+    solver: str | None = setting(names=tuple(SOLVERS))
+    split_impulse: bool | None = None
+    sleeping: bool | None = None
+    unit: float = setting(1.0, above=0.0)
+    corner_radius: float = setting(1e-6, above=0.0)
+    margin: float | None = setting(above=0.0)
+    reflection: bool = False
+    floor: str = setting("velocity", names=("velocity", "servo", "both", "position"))
+    restitution: float | None = setting(least=0.0, most=1.0)
+    base_restitution: float = setting(1.0, least=0.0, most=1.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+class DartWorld:
+    """Bodies on a box whose joint is driven by its velocity, whether it moves or not."""
+
+    moment = Moment.MIDDLE
+
+    def __init__(
+        self, scene: Scene, settings: DartSettings, dt_s: float, library: Any = None
+    ) -> None:
+        self._dart: Any = imported("dartpy") if library is None else library
+        self._s, self._unit = settings, settings.unit
+        self._way = settings.floor if scene.frame == "world" else ""
+        self._led = self._way in ("velocity", "servo")
+        self._driven = bool(self._way) or settings.reflection
+        self._margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
+        self._dt = self._speed = self._place = self.lag_m = 0.0
+        self._half = counted(half_size(scene.bodies[0]), self._unit)
+        self.coordinates = IN_PLANE if settings.planar else IN_SPACE
+        # what rests on others lands with them
+        self._together = scene.stacked and bool(settings.reflection or settings.margin)
+        self._lowered = (math.nan, 0.0)
+        self._corners: list[tuple[Any, Point]] = []
+        self._shapes: list[Any] = []
+        self.named: dict[str, list[Any]] = {name: [] for name in ("mount", "aside", "options")}
+        self.world = self._dart.simulation.World()
+        self._set_solver()
+        self.mover, self.floor = self._new_base(scene)
+        # a body lives as long as its skeleton, which only the world keeps
+        made = [self._new_body(scene, number) for number in range(len(scene.bodies))]
+        self.joints, self.bodies = [joint for joint, _ in made], [body for _, body in made]
+        self._set_restitution()
+        self._block, self._state = self.bodies[0], np.zeros((len(self.bodies), len(Pose._fields)))
+        self._fault = self._read_back(scene) if library is None else ""
+
+    def _set_solver(self) -> None:
+        s, dart, solver = self._s, self._dart, self.world.getConstraintSolver()
+        if s.collision is not None:
+            solver.setCollisionDetector(getattr(dart.collision, DETECTORS[s.collision])())
+        if s.sleeping is not None and hasattr(self.world, "setDeactivationOptions"):
+            options = self.world.getDeactivationOptions()  # a release without them has no sleep
+            options.mEnabled = s.sleeping
+            self.named["options"].append(options)
+            self.world.setDeactivationOptions(options)
+        if s.solver is not None:
+            solver.setBoxedLcpSolver(getattr(dart.constraint, SOLVERS[s.solver])())
+        if s.split_impulse is not None and hasattr(solver, "setSplitImpulseEnabled"):
+            solver.setSplitImpulseEnabled(s.split_impulse)
+
+    def _new_base(self, scene: Scene) -> Any:
+        half = counted(floor_half_size(scene), self._unit)
+        base = self._dart.dynamics.Skeleton("base")
+        drive, floor = base.createTranslationalJointAndBodyNodePair()
+        kinds = self._dart.dynamics.ActuatorType
+        drive.setActuatorType(kinds.SERVO if self._s.floor == "servo" else kinds.VELOCITY)
+        if self._s.aside:
+            self.named["mount"].append(floor)
+            aside, floor = base.createPrismaticJointAndBodyNodePair(floor)  # out of the plane
+            aside.setAxis((0.0, 1.0, 0.0))
+            self.named["aside"].append(aside)
+        box = self._dart.dynamics.BoxShape([2.0 * x for x in half])
+        self._shapes.append(self._attached(floor, box, (0.0, 0.0, -half[2])))
+        self.world.addSkeleton(base)
+        return drive, floor
+
+    def _new_body(self, scene: Scene, number: int) -> Any:
+        s, unit, body = self._s, self._unit, scene.bodies[number]
+        at, half = body.at, counted(half_size(body), unit)
+        skeleton = self._dart.dynamics.Skeleton(f"block{number or ''}")
+        carried = scene.layout.rests(number)
+        if self._together and carried:
+            aside, between = skeleton.createPrismaticJointAndBodyNodePair()
+            aside.setAxis((0.0, 1.0, 0.0))
+            joint, block = skeleton.createPlanarJointAndBodyNodePair(between)
+            joint.setZXPlane()
+        elif s.planar:
+            joint, block = skeleton.createPlanarJointAndBodyNodePair()
+            joint.setZXPlane()
+        else:
+            joint, block = skeleton.createFreeJointAndBodyNodePair()
+        block.setMass(body.mass)
+        if s.exact_inertia:
+            block.setMomentOfInertia(*(unit * unit * moment for moment in body.inertia))
+        if s.geometry == "box" or carried:
+            box = self._dart.dynamics.BoxShape([2.0 * x for x in half])
+            self._shapes.append(self._attached(block, box, (0.0, 0.0, 0.0)))
+        if s.geometry == "corners":
+            radius = s.corner_radius * scene.system.width
+            ball = self._dart.dynamics.SphereShape(radius * unit)
+            for corner in touching_spheres(scene, number, radius, planar=s.planar):
+                place = counted(corner, unit)
+                node = self._attached(block, ball, place)
+                self._shapes.append(node)
+                self._corners.append((node, place))
+        places = (at.x * unit, at.z * unit, at.theta)
+        speeds = (at.velocity_x * unit, at.velocity_z * unit, at.rate)
+        for coordinate, place_, speed in zip(self.coordinates, places, speeds, strict=True):
+            joint.setPosition(coordinate, place_)
+            joint.setVelocity(coordinate, speed)
+        self.world.addSkeleton(skeleton)
+        return joint, block
+
+    def _attached(self, body: Any, shape: Any, at: Point) -> Any:
+        """Give a body a shape, whose centre is at a place in its frame [units of length]."""
+        node = body.createShapeNode(shape)
+        node.createCollisionAspect()
+        node.createDynamicsAspect().setFrictionCoeff(float(self._s.friction))  # the smaller counts
+        node.setRelativeTranslation(at)
+        return node
+
+    def _set_restitution(self) -> None:
+        s = self._s
+        for number, shape in enumerate(self._shapes if s.restitution is not None else ()):
+            coefficient = s.restitution if number else s.base_restitution  # the product counts
+            shape.getDynamicsAspect().setRestitutionCoeff(coefficient)
+
+    def step(self, step: Step) -> None:
+        """Advance by a step; see `engines.world.SteppedWorld`."""
+        world, unit = self.world, self._unit
+        if step.dt_s != self._dt:
+            world.setTimeStep(step.dt_s)
+        world.setGravity((step.pull_x * unit, 0.0, step.pull_z * unit))
+        if self._margin:
+            self._lower(0.0 if step.phase is ContactPhase.REST else step.side, step.phase)
+        if self._led:
+            speed = (step.base_x * unit - self._place) / step.dt_s
+            self.mover.setCommands((speed, 0.0, 0.0))
+        elif self._driven:
+            self._drive(step)
+        world.step(False)
+        self._dt = step.dt_s
+        if self._led:
+            self._place = self.mover.getPosition(0)
+            self.lag_m = max(self.lag_m, abs(self._place / unit - step.base_x))
+        elif self._way:
+            self._place = step.base_x * unit
+
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        (x, z, theta), unit = self.coordinates, self._unit
+        for number, joint in enumerate(self.joints):
+            q, rate = joint.getPositions().tolist(), joint.getVelocity(theta)
+            self._state[number] = (q[x] - self._place) / unit, q[z] / unit, q[theta], rate
+        return self._state
+
+    def fault(self) -> str:
+        """Say which setting was not taken, or that the step is not the one that was set."""
+        return self._fault or disagreement({"step": (self._dt or None, self.world.getTimeStep())})
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+        world = self.world
+        # releases before 6.20 cannot answer removeAllSkeletons
+        for number in reversed(range(world.getNumSkeletons())):
+            world.removeSkeleton(world.getSkeleton(number))
+
+    def _lower(self, pivot: float, phase: ContactPhase) -> None:
+        """Keep the corners about which bodies turn, or all at rest, in contact.
+
+        Free corners of what rests on others reach out in an impact, and are drawn in before it.
+        """
+        free = FREE.get(phase, 0.0) if self._together else 0.0
+        if (pivot, free) == self._lowered:
+            return
+        self._lowered = pivot, free
+        for node, (x, y, z) in self._corners:
+            part = 1.0 if -pivot * x * z >= 0.0 else free
+            node.setRelativeTranslation((x, y, z + math.copysign(1.0, z) * part * self._margin))
+
+    def _drive(self, step: Step) -> None:
+        """Set the base's place and velocity, by which the pivot is given its own back, too."""
+        back = returned(step, self._dt) if self._s.reflection else 0.0
+        self.mover.setPositions((self._place, 0.0, 0.0))
+        speed = step.base_velocity * self._unit if self._way == "both" else 0.0
+        along, up = speed, 0.0
+        if back:
+            corner = (step.side * self._half[0], 0.0, -self._half[2])
+            x, _, z = self._block.getLinearVelocity(corner).tolist()
+            along, up = speed - back * (x - self._speed), -back * z
+        self.mover.setCommands((along, 0.0, up))
+        self._speed = speed
+
+    def _read_back(self, scene: Scene) -> str:
+        s, world, solver = self._s, self.world, self.world.getConstraintSolver()
+        sleeps = hasattr(world, "getDeactivationOptions")
+        splits = hasattr(solver, "isSplitImpulseEnabled")
+        shapes = [self.floor.getShapeNode(0), self._block.getShapeNode(0)]
+        top, own = (node.getDynamicsAspect() for node in shapes)
+        masses: dict[str, tuple[float | None, float]] = {}
+        for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
+            moment = wanted.inertia[1] * self._unit**2 if s.exact_inertia else None
+            masses[f"mass {number}"] = (wanted.mass, found.getMass())
+            masses[f"moment {number}"] = (moment, found.getInertia().getMoment()[1, 1])
+        return disagreement(
+            {
+                **masses,
+                "friction": (s.friction, min(top.getFrictionCoeff(), own.getFrictionCoeff())),
+                "restitution": (
+                    None if s.restitution is None else s.restitution * s.base_restitution,
+                    top.getRestitutionCoeff() * own.getRestitutionCoeff(),
+                ),
+                "solver": (SOLVERS.get(s.solver or ""), type(solver.getBoxedLcpSolver()).__name__),
+                "split impulse": (s.split_impulse, splits and solver.isSplitImpulseEnabled()),
+                "sleeping": (s.sleeping, sleeps and world.getDeactivationOptions().mEnabled),
+            }
+        )
+
+
+def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
+    """Return a scene as calls of DART; see `engines.run.export`."""
+    notes, unit = Notes(chained=True), settings.unit
+    world = DartWorld(scene, settings, dt_s, notes.of(imported("dartpy"), "dart"))
+    notes.name(world=world.world, drive=world.mover, floor=world.floor, **world.named)
+    notes.name(joint=world.joints)
+    notes.name_bodies(world.bodies)
+    notes.listed(joints=world.joints)
+    floor, (along, _, theta) = settings.floor if scene.frame == "world" else "", world.coordinates
+    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+    led = [f"drive.setCommands((({x} - drive.getPosition(0)) / DT, 0.0, 0.0))"]
+    moves = {
+        "": [],
+        "velocity": led,
+        "servo": led,
+        "both": [
+            f"drive.setPositions(({x} - DT * {velocity}, 0.0, 0.0))",
+            f"drive.setCommands(({velocity}, 0.0, 0.0))",
+        ],
+    }
+    one_of("floor of a script", floor, moves)
+    under = {"": "", "both": f" - {x}"}.get(floor, " - drive.getPosition(0)")
+    words = ("Detector", "Solver(", "Enabled", "ZXPlane", "FrictionCoeff", "RestitutionCoeff")
+    return Script(
+        imports=("import dartpy as dart",),
+        settings=(f"world.setTimeStep({dt_s!r})", *notes.quoted(*words)),
+        build=(*notes.lines(), "world.setTimeStep(DT)"),
+        step=(
+            f"world.setGravity(({scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}))",
+            *moves[floor],
+            "world.step(False)",
+        ),
+        pose=(
+            f"theta = joints[number].getPosition({theta})",
+            f"rate = joints[number].getVelocity({theta})",
+        ),
+        place=f"(joints[0].getPosition({along}){under}) / {unit!r}",
+    )
+
+
+TUNED = DartSettings(
+    geometry="corners",
+    planar=True,
+    aside=True,
+    friction=10.0,
+    collision="DART",
+    sleeping=False,
+    unit=1e5,
+    floor="both",
+)
+
+LANDING = replace(TUNED, margin=0.5, reflection=True)
+
+MASSLESS = "friction without mass: the Dantzig solver fails, and PGS answers in its stead"
+UNFINISHED = "an iteration that may end before friction holds: a pivot slides in some cases"
+UNIT_INERTIA = "the mass alone leaves the moments of inertia at 1 kg m2"
+
+DOCUMENTED = (
+    Citation("step", "0.001 s, the default", "World.getTimeStep"),
+    Citation("solver", "Dantzig's, the default", "ConstraintSolver.getBoxedLcpSolver"),
+    Citation(
+        "solver",
+        "where it fails PGS, 30 iterations, from the last step's impulses",
+        "dart pull request 1265; PgsBoxedLcpSolverOption; ContactWarmStartCache.hpp",
+    ),
+    Citation("collision", "FCL's, the default", "ConstraintSolver.getCollisionDetector"),
+    Citation(
+        "contact",
+        "of a depth 0.01 a step is corrected, by at most 0.001 a second",
+        "ContactConstraint.cpp; split impulse is off",
+    ),
+    Citation("sleeping", "on, the default since 6.19", "World.getDeactivationOptions"),
+    Citation(
+        "sleeping",
+        "after 0.5 s below 0.01 m/s and 0.05 rad/s; commands are said to wake",
+        "DeactivationOptions.hpp, dart pull request 2920",
+    ),
+    Citation(
+        "friction", "1, the default, of a pair the smaller", "DynamicsAspect.getFrictionCoeff"
+    ),
+    Citation(
+        "floor",
+        "a joint of ActuatorType VELOCITY, setCommands; or SERVO, a dynamic one",
+        "dart/dynamics/detail/JointAspect.hpp, ActuatorType",
+    ),
+)
+"""What its documentation sets, in dartpy 6.20.0."""
+
+RECOMMENDED = (
+    Citation("sleeping", "off, for who needs the path of before", "dart pull requests 2920, 3086"),
+    Citation("solver", "Dantzig's, the default, which is more precise", "dart issue 961"),
+)
+"""What it recommends: no page of it is on stiff contact."""
+
+FACTORS = (
+    factor("aside", level("no", trap=MASSLESS, aside=False), name="base in the plane"),
+    factor("unit", level("1e3 a metre", unit=1e3), name="unit of length"),
+    factor(
+        "solver",
+        level("NSGS", BOTH, solver="NSGS"),
+        level("FBF", BOTH, trap=UNFINISHED, solver="FBF"),
+        name="solver of contact forces",
+    ),
+    factor("split_impulse", level("on", BOTH, split_impulse=True)),
+    factor("sleeping"),
+    Factor(
+        "geometry",
+        ("geometry", "planar", "aside"),
+        (
+            level("4 corners", planar=False, aside=False),
+            level("planar box", geometry="box"),
+        ),
+    ),
+    factor(
+        "collision",
+        level("FCL", collision="FCL"),
+        level("Bullet", BOTH, collision="BULLET"),
+        level("ODE", BOTH, collision="ODE"),
+        level("DART", (DEFAULT,), collision="DART"),
+        name="collision detector",
+    ),
+    factor(
+        "exact_inertia",
+        level("of 1 kg m²", BOTH, trap=UNIT_INERTIA, exact_inertia=False),
+        name="inertia",
+    ),
+    factor("corner_radius", level("B/500", corner_radius=2e-3)),
+    factor("margin", level("0.5", margin=0.5), level("10", margin=10.0)),
+    factor("friction"),
+    moving_base("both", "velocity", "servo", "position"),
+)
+"""What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Set the moment of inertia after `setMass`, by `setMomentOfInertia`: it stays 1 kg m²",
+        *(BEST, "inertia", "of 1 kg m²"),
+    ),
+    Rule(
+        "Drive a base that moves by a joint's velocity: friction does not feel one that is placed",
+        *UNMOVED_BASE,
+    ),
+)
+"""What its users should know first."""
+
+NAIVE = Preset(
+    name="naive",
+    settings=DartSettings(),
+    step_s=1e-3,
+    documented=DOCUMENTED,
+    frame="world",
+)
+
+ENGINE = Engine(
+    name="dart",
+    title="DART",
+    library="dartpy",
+    packages=("dartpy",),
+    install="rocking[dart]",
+    build=DartWorld,
+    stacks=True,
+    presets=(
+        NAIVE,
+        NAIVE.at_rest(),
+        NAIVE.recommended(*RECOMMENDED, sleeping=False),
+        Preset(
+            name="fixed",
+            settings=TUNED,
+            step=5e-4,
+        ),
+        Preset(
+            name="landing",
+            settings=LANDING,
+            stepping=Stepping.LANDING,
+            stacked={"margin": 30.0, "unit": 1e7},
+            helped_by={
+                Help.STEPS: None,
+                Help.REFLECTION: {"reflection": False},
+                Help.MARGIN: {"margin": None},
+            },
+        ),
+    ),
+    rest_factor=1.0,
+    script=script,
+    factors=FACTORS,
+    rules=RULES,
+)
