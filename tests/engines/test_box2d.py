@@ -1,9 +1,9 @@
 """Box2D: the traps that it sets without a word."""
 
 import pytest
-from uses import BLOCK, HERE, error, pulse, rocked
+from uses import HERE, error, pulse, rocked
 
-from analytic import RigidBlock, SinePulse, simulate
+from analytic import RigidBlock
 from engines.parts import imported
 
 pytestmark = pytest.mark.skipif("box2d" not in HERE, reason="Box2D is not installed")
@@ -48,28 +48,3 @@ def test_blocks_of_any_size_move_alike(accuracy):
         motion = pulse(1.3, 3.0, 2, block)
         peaks.append(rocked("box2d", motion, system=block, accuracy=accuracy).peak_ratio)
     assert peaks == pytest.approx([peaks[1]] * 3, rel=1e-4)
-
-
-def test_a_large_block_is_slowed_where_a_step_is_too_long_for_its_units():
-    """200 units a height, at p dt = 0.05: the centre would move further than two of them."""
-    motion = pulse(2.0, 1.0)
-    right, slowed = (
-        rocked("box2d", motion, step=0.05, settings={"units": units}) for units in (20.0, 2000.0)
-    )
-    assert right.outcome is simulate(BLOCK, motion).outcome
-    assert slowed.peak_ratio != pytest.approx(right.peak_ratio, rel=0.1)
-
-
-def test_a_box_acts_from_its_skin_on():
-    """0.01 units a polygon, 1e-3 of the height at 20 units: at it, the corners are round."""
-    box = {"geometry": "box", "units": 20.0}
-    assert error("box2d", settings={**box, "skins_below": True}) < 3e-2
-    assert error("box2d", settings={**box, "skins_below": False}) > 0.2
-
-
-def test_a_block_that_its_skins_hold_leaning_is_at_rest():
-    """After a pulse of 1.01 onsets it stays 6e-6 of alpha off upright, 1e-5 of p alpha slow, for
-    ever: taken for a swing, it took all the steps there are."""
-    block = RigidBlock(width=0.5, height=1.0424795067181944)
-    motion = SinePulse(amplitude=4.752179748449666, omega=6.671202601062823, half_cycles=1)
-    assert error("box2d", motion, system=block, preset="fixed", max_steps=10_000) < 1e-3
