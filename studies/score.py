@@ -192,12 +192,12 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
 
 def figures(tables: Tables) -> Mapping[str, Figure]:
     """Draw the errors of its presets over their run times, and the matrix of extreme cases."""
-    from studies.drawing.precision import draw_score
+    from studies.drawing.precision import draw_precision
     from studies.drawing.stability import draw_matrix
 
     along = precision.work_precision(tables[STEPS])
     return {
-        "score": draw_score(along, precision.engines_of(published())),
+        "score": draw_precision(along, precision.engines_of(published())),
         "extremes": draw_matrix(tables[EXTREMES], "Extreme cases"),
     }
 
@@ -219,7 +219,7 @@ the one at which its velocities hold is refused.""",
     figures=figures,
     needed=lambda rows: [row for row in rows if row["part"] == SWEEP],
     captions={
-        "score": "The engine's presets along their steps, largest error against run time; grey "
+        "score": "The engine's presets along their steps, median error against run time; grey "
         "behind them the published engines.",
         "extremes": "Extreme cases, a column for each preset: the symbol says how its answer is.",
     },

@@ -1,4 +1,4 @@
-"""Error against run time, a panel for each engine; and of one engine beside the published."""
+"""Error against run time, a panel for each engine."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from engines import ENGINES
-from studies.drawing.facets import error_scale, sheet, strip_beyond
-from studies.drawing.labels import Name, around, beside
+from studies.drawing.facets import error_scale, strip_beyond
+from studies.drawing.labels import Name, around
 from studies.drawing.styles import LOWEST, Style, title_of
-from studies.kit.say import duration, listed
-from studies.measures.costs import EXACT, exact_cost, method_title
+from studies.kit.say import duration
+from studies.measures.costs import EXACT, exact_cost
 from studies.measures.finer import joint
 from studies.measures.presets import look_of
 
@@ -31,7 +31,7 @@ STYLES = {
     "onset-matched, closed form": Style("#CC79A7", "", "*"),
 }
 WRONG, EDGE, TOP, ACROSS = 10.0, 3.0, 60.0, 3
-"""Where methods that fail or are wrong are drawn, the strip around that, and panels in a row."""
+"""Where methods that fail or are wrong are drawn, the strip there, and most panels in a row."""
 
 
 def engine_in(method: str) -> tuple[str, str]:
@@ -63,29 +63,33 @@ def placed(table: pd.DataFrame) -> pd.DataFrame:
     return lines[lines["wall_s"] > 0.0]
 
 
-def draw_precision(table: pd.DataFrame) -> Figure:
-    """Draw the median error of the peak against the run time of a case."""
+def draw_precision(table: pd.DataFrame, behind: pd.DataFrame | None = None) -> Figure:
+    """Draw the median error of the peak against the run time of a case; others pale behind."""
     lines = placed(table)
+    pale = lines if behind is None else pd.concat([lines, placed(behind)])
     engine = lines["method"].map(lambda method: engine_in(method)[0])
     names = sorted(engine.unique(), key=bool)  # what is no engine comes first
     first = names.count("")
-    down = -(-(len(names) - first) // ACROSS)
-    drawing = Figure(figsize=(10.4, 1.2 + 2.9 * first + 2.4 * down), layout="constrained")
-    grid = drawing.add_gridspec(first + down, ACROSS, height_ratios=[1.4] * first + [1.0] * down)
+    across = max(min(len(names) - first, ACROSS), 1)
+    down = -(-(len(names) - first) // across)
+    high = 1.2 + 2.9 * first + (2.4 if across > 1 else 3.8) * down
+    drawing = Figure(figsize=(10.4, high), layout="constrained")
+    grid = drawing.add_gridspec(first + down, across, height_ratios=[1.4] * first + [1.0] * down)
     panels: list[Axes] = []
     named = []
     for place, name in enumerate(names, start=-first):
-        where = grid[first + place // ACROSS, place % ACROSS] if name else grid[0, :]
+        where = grid[first + place // across, place % across] if name else grid[0, :]
         scale = panels[first] if name and place else None
         axes = drawing.add_subplot(where, sharex=panels[0] if panels else None, sharey=scale)
         if name:
-            lowest = place + ACROSS >= len(names) - first
-            axes.tick_params(labelleft=place % ACROSS == 0, labelbottom=lowest)
+            lowest = place + across >= len(names) - first
+            axes.tick_params(labelleft=place % across == 0, labelbottom=lowest)
         if scale is None:  # the others share its scale
             low = 1e-10 if name else LOWEST / 3.0
             axes.set(xscale="log", yscale="log", ylim=(low, TOP))
             error_scale(axes.yaxis, low, 1.0, 2 if name else 4)
-        named.append(_panel(axes, lines[engine == name], lines[engine != name]))
+        mine = lines[engine == name]
+        named.append(_panel(axes, mine, pale[~pale["method"].isin(mine["method"])]))
         cases = int(table.groupby("set")["cases"].max().sum())
         words = f"a failure or a wrong outcome in one of {cases} cases" * (not panels)
         strip_beyond(axes, EDGE, words)
@@ -121,40 +125,3 @@ def _panel(axes: Axes, mine: pd.DataFrame, others: pd.DataFrame) -> list[Name]:
         names.append(Name(words, best["wall_s"], best["error"], style.colour))
     axes.grid(alpha=0.2)
     return names
-
-
-def draw_score(along: pd.DataFrame, published: pd.DataFrame) -> Figure:
-    """Draw the largest error over all cases against the run time of a case.
-
-    The columns of work-precision.csv, of one engine and of the published ones.
-    """
-    drawing, (axes,) = sheet((9.0, 5.4))
-    axes.set(xscale="log", yscale="log", ylim=(1e-8, TOP))
-    mine, others = joint(along), joint(published)
-    others = others[~others["method"].isin(mine["method"])]
-    best = {f"{name} {engine.best.name}" for name, engine in ENGINES.items()}
-    behind, names = Style("#b5b5b5", "-", ".", 0.9), []
-    for lines in (others, mine):
-        for name, line in lines[lines["wall_s"] > 0.0].groupby("method", sort=False):
-            style = behind if lines is others else method_style(str(name))
-            right = (line["failed"] == 0) & np.isfinite(line["max_error"])
-            error = line["max_error"].where(right, WRONG).clip(lower=LOWEST)
-            look = {**style.points(), "linestyle": style.line or "none", "linewidth": style.width}
-            axes.plot(line["wall_s"], error, **look)
-            if lines is mine or name in best:
-                last = int(np.argmax(line["wall_s"]))
-                at = float(line["wall_s"].iloc[last]), float(error.iloc[last])
-                colour = "#777777" if lines is others else style.colour
-                names.append(Name(method_title(str(name)), *at, colour))
-    words = "a failure or a wrong outcome"
-    if untimed := sorted(set(mine["method"]) - set(mine.loc[mine["wall_s"] > 0.0, "method"])):
-        words += f"; without a run time: {listed(map(method_title, untimed))}"
-    strip_beyond(axes, EDGE, "")
-    axes.text(0.01, 0.985, words, va="top", fontsize=8, color="#666666", transform=axes.transAxes)
-    axes.set_xlabel("run time of a case, set-up apart  [s]")
-    axes.set_ylabel(f"largest relative error of the peak, {mine['cases'].max()} cases  [–]")
-    counts = f" in {others['cases'].max()} cases" if len(others) else ""
-    axes.set_title(f"Error against run time along the step; grey: the published engines{counts}")
-    axes.grid(alpha=0.25)
-    beside(axes, names)
-    return drawing
