@@ -19,22 +19,19 @@ from engines.mujoco.contact import (
     Arrays,
     ContactState,
     Forces,
+    direct,
     notice,
     prepare,
     read,
-    set_reference,
 )
 from engines.parts import corner_spheres, floor_half_size, half_size, hull_points
 from engines.parts.compiled import fill, interpreted, switched_off
 from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
-from engines.world import ContactPhase, Driver, FloatArray, Moment, Pose, Script, Step
+from engines.world import Driver, FloatArray, Moment, Pose, Script, Step
 
 LIBRARY_STEP_S = 0.002
 """The library's own time step [s]."""
-
-INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
-"""Integrators of the library."""
 
 NARROWEST_CONE = 0.1
 """Friction over the root of impratio: what the solver takes for the cone; it errs in a narrower
@@ -66,8 +63,8 @@ class MujocoSettings:
     Attributes
     ----------
     geometry : str
-        "box", "corners": small spheres where the corners at the base are, or "hull": a convex
-        mesh of the block's eight corners.
+        "box", "corners" (small spheres where the corners at the base are) or "hull" (a convex mesh
+        of the block's eight corners).
     planar : bool
         Give the block two slides and a hinge, and two corners in the middle plane, instead of a
         free joint and four corners at the edges.
@@ -122,7 +119,7 @@ class MujocoSettings:
     reflection: bool = False
     carry: float | None = setting(above=0.0)
     preload: bool = False
-    integrator: str | None = setting(names=INTEGRATORS)
+    integrator: str | None = setting(names=("Euler", "RK4", "implicit", "implicitfast"))
     noslip_iterations: int | None = setting(least=0)
     solref: tuple[float, float] | None = None
     margin: float | None = setting(least=0.0)
@@ -170,49 +167,61 @@ class MujocoSettings:
 
 
 def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
-    """Return the model of a scene in MuJoCo's own language, for ordinary steps of dt_s [s].
+    """Return the model of a scene in MuJoCo's own language, for steps of dt_s [s].
 
-    Bodies stand upright at rest, wherever they begin. The step, and the references of contacts that
-    go by it, are not in it: a run sets them.
+    Bodies stand upright at rest, wherever they begin; a run sets the step, and the references of
+    contacts that go by it, with each step.
     """
+    options = "".join(f'{k}="{getattr(s, k)}" ' for k in OPTIONS if getattr(s, k) is not None)
+    flag = ""
+    if s.diagexact is not None:
+        flag = f'<flag diagexact="{"enable" if s.diagexact else "disable"}"/>'
     margin = (s.margin or 0.0) * scene.system.width
-    options = " ".join(f'{k}="{getattr(s, k)}"' for k in OPTIONS if getattr(s, k) is not None)
-    exact = "" if s.diagexact is None else "enable" if s.diagexact else "disable"
-    flag = f'<flag diagexact="{exact}"/>' if exact else ""
-    bodies = "".join(_body(scene, number, s, margin) for number in range(len(scene.bodies)))
-    pairs = "" if s.impedance is None else "".join(_pairs(scene, s, margin, dt_s))
-    base, floor, weld = _base(scene, s)
-    meshes = ""
+    held, reference = f'friction="{s.friction} 0.005 0.0001"', ""
+    if s.solref is not None:
+        reference = f'solref="{_row((s.solref[0] * dt_s, s.solref[1]))}"'
+    base, floor, weld = _base(scene, s, f"{held} {reference}")
+    shapes = f'{held} margin="{margin}" {reference}'
+    bodies = "".join(_body(scene, number, s, shapes) for number in range(len(scene.bodies)))
+    pairs = meshes = ""
+    if s.impedance is not None:
+        if s.damping is not None:
+            by = s.impedance[1], dt_s, s.stiffness or 0.0
+            normal, along = direct(*by, s.damping), direct(*by, s.sliding_damping or 0.0)
+            reference = f'solref="{_row(normal)}" solreffriction="{_row(along)}"'
+        friction = _row((s.friction, s.friction, 0.005, 0.0001, 0.0001))
+        held = f'friction="{friction}" margin="{margin}" solimp="{_row(s.solimp(scene, dt_s))}"'
+        touching = (f'{names} condim="3" {held} {reference}' for names in _pairs(scene, s))
+        pairs = "".join(f"<pair {each}/>" for each in touching)
     if s.geometry == "hull":
         hulls = ((n, " ".join(map(_row, hull_points(each)))) for n, each in enumerate(scene.bodies))
         each = (f'<mesh name="{_named("hull", n)}" vertex="{points}"/>' for n, points in hulls)
         meshes = f"<asset>{''.join(each)}</asset>"
     return (
-        f"<mujoco><option {options}>{flag}</option>{meshes}<worldbody>{base}{bodies}"
-        f"{floor}</worldbody><contact>{pairs}</contact>{weld}</mujoco>"
+        f'<mujoco><option {options}timestep="{dt_s!r}">{flag}</option>{meshes}<worldbody>{base}'
+        f"{bodies}{floor}</worldbody><contact>{pairs}</contact>{weld}</mujoco>"
     )
 
 
-def _base(scene: Scene, s: MujocoSettings) -> tuple[str, str, str]:
+def _base(scene: Scene, s: MujocoSettings, held: str) -> tuple[str, str, str]:
     """Return the base; or what leads it, the base, whose joint comes last, and the weld of both."""
-    friction, first = _friction(s), scene.bodies[0]
     if scene.frame != "world":
-        return f'<geom name="base" type="plane" size="1 1 1" {friction}/>', "", ""
-    at = f'pos="0 0 {-first.height}"'
+        return f'<geom name="base" type="plane" size="1 1 1" {held}/>', "", ""
+    at = f'pos="0 0 {-scene.bodies[0].height}"'
     box = f'<geom name="base" type="box" size="{_row(floor_half_size(scene))}"'
     if s.floor != "weld":
         # a plane may not move, so a box does; any surface velocity will do to switch it on
         slides = f'surfacevel="{int(s.floor == "surfacevel")} 0 0"'
-        return f'<body mocap="true" {at}>{box} {slides} {friction}/></body>', "", ""
+        return f'<body mocap="true" {at}>{box} {slides} {held}/></body>', "", ""
     mass = FLOOR_MASSES * sum(body.mass for body in scene.bodies)
     return (
         f'<body name="guide" mocap="true" {at}/>',
-        f'<body name="floor" {at}><freejoint/>{box} mass="{mass}" {friction}/></body>',
+        f'<body name="floor" {at}><freejoint/>{box} mass="{mass}" {held}/></body>',
         '<equality><weld body1="guide" body2="floor"/></equality>',
     )
 
 
-def _body(scene: Scene, number: int, s: MujocoSettings, margin: float) -> str:
+def _body(scene: Scene, number: int, s: MujocoSettings, held: str) -> str:
     """Return a body, and what it touches others with, or is touched on."""
     body, (x, z) = scene.bodies[number], scene.bodies[number].home
     shapes = {}
@@ -227,25 +236,20 @@ def _body(scene: Scene, number: int, s: MujocoSettings, margin: float) -> str:
         shapes[_named("hull", number)] = f'type="mesh" mesh="{_named("hull", number)}"'
     elif s.geometry == "box" or scene.layout.rests(number):
         shapes[_named("box", number)] = f'type="box" size="{_row(half_size(body))}"'
-    held = f'{_friction(s)} margin="{margin}"'
     geoms = "".join(f'<geom name="{name}" {shape} {held}/>' for name, shape in shapes.items())
     inertial = f'<inertial pos="0 0 0" mass="{body.mass}" diaginertia="{_row(body.inertia)}"/>'
     joints = PLANAR_JOINTS if s.planar else "<freejoint/>"
     return f'<body pos="{x} 0 {z}">{joints}{inertial}{geoms}</body>'
 
 
-def _pairs(scene: Scene, s: MujocoSettings, margin: float, dt_s: float) -> Iterator[str]:
+def _pairs(scene: Scene, s: MujocoSettings) -> Iterator[str]:
     """Yield what touches what: the corners of each contact, those at -x first."""
-    friction = _row((s.friction, s.friction, 0.005, 0.0001, 0.0001))
-    # any direct form will do for now: it is set with the first step
-    reference = "" if s.damping is None else 'solref="-1 -1" solreffriction="-1 -1"'
-    held = f'friction="{friction}" margin="{margin}" solimp="{_row(s.solimp(scene, dt_s))}"'
     shape = "hull" if s.geometry == "hull" else "box"
     for order, each in enumerate(scene.layout.contacts):
         on = "base" if each.on == BASE else _named(shape, each.on)
         whole = [_named(shape, each.body)]
         for name in _corners(order, s) if s.geometry == "corners" else whole:
-            yield f'<pair geom1="{on}" geom2="{name}" condim="3" {held} {reference}/>'
+            yield f'geom1="{on}" geom2="{name}"'
 
 
 def _corners(order: int, s: MujocoSettings) -> list[str]:
@@ -257,10 +261,6 @@ def _corners(order: int, s: MujocoSettings) -> list[str]:
 def _named(shape: str, number: int) -> str:
     """Return the name of a body's shape; the first body's is the shape's."""
     return f"{shape}{number or ''}"
-
-
-def _friction(s: MujocoSettings) -> str:
-    return f'friction="{s.friction} 0.005 0.0001"'
 
 
 def _row(numbers: tuple[float, ...] | list[float]) -> str:
@@ -313,7 +313,7 @@ class MujocoWorld:
 
             self.drive = partial(drive, holds, self.arrays, memory_of(self.model, self._data))
         # the library would write its warnings to a file; they are counted and read from `fault`
-        self._mj.set_mju_user_warning(_ignore)
+        self._mj.set_mju_user_warning(lambda message: None)
 
     def step(self, step: Step) -> None:
         """Advance by a step; see `engines.world.SteppedWorld`."""
@@ -356,7 +356,7 @@ class MujocoWorld:
     def _read_back(self, dt_s: float) -> str:
         s, model, scene = self.settings, self.model, self._scene
         pairs: dict[str, tuple[Any, Any]] = {
-            "timestep": (LIBRARY_STEP_S, model.opt.timestep),
+            "timestep": (dt_s, model.opt.timestep),
             "friction": (s.friction, model.geom_friction[-1, 0]),
         }
         for number, body in enumerate(scene.bodies, 1 + (scene.frame == "world")):
@@ -456,10 +456,6 @@ def looping() -> bool:
     return usable()
 
 
-def _ignore(message: str) -> None:
-    """Take a warning without writing it anywhere."""
-
-
 MODEL = "block.xml"
 """File of a script's model, beside it."""
 
@@ -467,33 +463,13 @@ SAID = ("<option", "<geom", "<pair", "<weld")
 """Elements of a model that a preset sets, the joints apart."""
 
 
-def stepped_xml(world: MujocoWorld, dt_s: float) -> str:
-    """Return the model of a world with what is set at equal steps dt_s [s], a line each."""
-    step = Step(dt_s, *7 * (0.0,), ContactPhase.SWING, 0.0)
-    world.held.dt = dt_s
-    set_reference(world.held, world.arrays, step)
-    root, arrays = ElementTree.fromstring(world.xml), world.arrays
-    for option in root.iter("option"):
-        option.set("timestep", repr(dt_s))
-    pairs, geoms = list(root.iter("pair")), list(root.iter("geom"))
-    if world.held.form != UNSET:
-        for pair, reference in zip(pairs, arrays.pair_reference.tolist(), strict=True):
-            pair.set("solref", _row(reference))
-    if world.held.form == DIRECT:
-        for pair, reference in zip(pairs, arrays.pair_friction.tolist(), strict=True):
-            pair.set("solreffriction", _row(reference))
-    if world.held.form == SCALED:
-        for geom, reference in zip(geoms, arrays.geom_reference.tolist(), strict=True):
-            geom.set("solref", _row(reference))
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="unicode") + "\n"
-
-
 def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
     """Return a scene as a model of MuJoCo; see `engines.world.Script`."""
     world = MujocoWorld(replace(scene, compiled=False), settings, dt_s)
-    s, model, welded = world.settings, stepped_xml(world, dt_s), world.held.welded
+    s, root, welded = world.settings, ElementTree.fromstring(world.xml), world.held.welded
     world.close()
+    ElementTree.indent(root)
+    model = ElementTree.tostring(root, encoding="unicode") + "\n"
     build = [f'model = mujoco.MjModel.from_xml_path(str(HERE / "{MODEL}"))']
     build.append("data = mujoco.MjData(model)")
     if not all(body.at.at_rest for body in scene.bodies):

@@ -68,41 +68,31 @@ class ContactState(State):
 
     Attributes
     ----------
-    planar, moving, base_velocity, welded : bool
-        Whether the block has three coordinates, whether the base moves, with a velocity, or as a
-        body of its own.
-    single, stacked : bool
-        Whether all corners of a contact share one pair, and whether bodies rest on others.
+    planar, moving, base_velocity, welded, single, stacked : bool
+        Whether bodies have three coordinates; whether the base moves, with a velocity, or as a body
+        of its own; whether all corners of a contact share one pair; whether bodies rest on others.
     by_phase, reflects, preload : bool
-        What changes with the step.
+        What changes with the step, as in the settings.
     width, height : float
         Of a body that rocks, the half of the latter [m].
-    form : int
-        Of the contact's reference, one of `UNSET`, `SCALED`, `DIRECT`.
-    time_constant, ratio : float
-        The two numbers of `SCALED`, the first one over the step.
-    damping, sliding_damping, stiffness, impedance : float
-        Those of `DIRECT`, without units.
+    form, time_constant, ratio, damping, sliding_damping, stiffness, impedance : int, float
+        Of the reference: `SCALED` has the next two, the first over the step, `DIRECT` the others.
     carry : float
         Gap [m] within which the pivot stays in contact; 0 for no such thing.
     touching, pairs, corners : int
         Contacts of the layout, pairs that touch, and how many of them at each side of a contact.
-    ordinary_squared, impedance_squared : float
-        Squares of the ordinary step and of the impedance.
-    growth, steady : float
-        By how much what is returned may grow in a step, and where the block was released.
-    dt, time : float
-        Length and end of the last step [s].
-    sliding : float
-        Damping along the base in this step.
+    ordinary_squared, impedance_squared, growth, steady : float
+        Squares of the ordinary step [s] and of the impedance; by how much what is returned may grow
+        in a step, and where the block was released.
+    dt, time, sliding : float
+        Length and end of the last step [s], and the damping along the base in it.
     moved, raised, velocity, lag : float
         Place [m] and velocity [m/s] of the base, its height above where it began, and how far [m] a
         welded one was at most from where it should have been.
-    aloft, released : bool
-        Whether the last step was of a swing, and whether every step since a release was.
-    rate, gained, returned, last_dt : float
-        The last angular velocity [rad/s], and what it gained [rad/s2]; of the last step the part of
-        the pivot's velocity that was returned, and its length [s].
+    aloft, released, rate, gained, returned, last_dt : bool, float
+        Whether the last step was of a swing, and every step since a release; the angular velocity
+        [rad/s], what it gained [rad/s2], the part of the pivot's velocity that was returned, and
+        the length of that step [s].
     """
 
     planar: bool
@@ -156,18 +146,11 @@ class Arrays(NamedTuple):
         [rad], and their rates; a free one x, y, z [m] and a quaternion, its real part first, and a
         velocity [m/s] and angular velocity [rad/s].
     gravity : ndarray (3,)
-        [m/s2].
-    pair_reference, pair_friction : ndarray (pairs, 2)
-        The reference along the normal, and along the base: minus a stiffness [1/s2] and minus a
-        damping [1/s], or a time constant [s] and a damping ratio.
-    pair_margin : ndarray (pairs,)
-        Gap [m] from which on a pair acts.
-    geom_reference : ndarray (geoms, 2)
-        The reference of shapes that touch without a pair.
-    surface_velocity : ndarray (geoms, 6)
-        Of each shape's surface [m/s, rad/s], first that of a base with one.
-    base_place : ndarray (bodies moved, 3)
-        Where bodies are [m] that are moved by their place.
+    pair_reference, pair_friction, pair_margin, geom_reference : ndarray (k, 2), (k,)
+        Two numbers of `solref` along the normal and along the base, and the gap [m] from which on a
+        pair acts; the first for shapes that touch without a pair.
+    surface_velocity, base_place : ndarray (geoms, 6), (bodies moved, 3)
+        Of each shape's surface [m/s, rad/s], first that of the base; where the base is put [m].
     pairs : ndarray (pairs, 8)
         A row for each of the library's, columns `SIDE` to `RESISTED`.
     homes : ndarray (bodies, 3)
@@ -255,8 +238,8 @@ def set_reference(held: ContactState, arrays: Arrays, step: Step) -> None:
     if held.by_phase and (step.side != 0.0 or step.phase != ContactPhase.REST):
         firm = FEEBLE
     held.sliding = held.sliding_damping + back
-    put_direct(arrays.pair_reference, held, firm, held.damping + back)
-    put_direct(arrays.pair_friction, held, firm, held.sliding)
+    put_pair(arrays.pair_reference, *direct(held.impedance, dt, firm, held.damping + back))
+    put_pair(arrays.pair_friction, *direct(held.impedance, dt, firm, held.sliding))
     if held.carry != 0.0 and step.phase == ContactPhase.REST and step.side == 0.0:
         hold_at_rest(held, arrays, step)
     elif held.carry != 0.0:
@@ -264,14 +247,14 @@ def set_reference(held: ContactState, arrays: Arrays, step: Step) -> None:
 
 
 @shared
-def put_direct(table: FloatArray, held: ContactState, stiffness: float, damping: float) -> None:
-    """Write k dt^2 and b dt as a pair's solref: minus a stiffness [1/s2] and minus a damping [1/s].
+def direct(impedance: float, dt_s: float, stiffness: float, damping: float) -> tuple[float, float]:
+    """Return solref of k dt^2 and b dt: minus a stiffness [1/s2] and minus a damping [1/s].
 
     The library divides both by the impedance, the first one twice (MuJoCo's modeling.rst, "Solver
     parameters").
     """
-    unit = held.impedance / held.dt
-    put_pair(table, -stiffness * (unit * unit), -unit * damping)
+    unit = impedance / dt_s
+    return -stiffness * (unit * unit), -unit * damping
 
 
 @shared

@@ -34,15 +34,12 @@ C_TYPES: Mapping[str, Any] = {
 }
 """The library's names of plain C types."""
 
-PROBE = """<mujoco><worldbody><geom type="plane" size="1 1 1"/><body pos="0 0 0.09"><freejoint/>
-<geom type="sphere" size="0.1"/></body></worldbody></mujoco>"""
-
 
 class Memory(NamedTuple):
     """Addresses of a model and its data, and arrays that share their memory.
 
-    These hold the step [s]; the numbers of contacts, and of rows of the solver; the addresses of R
-    and of the force of each row; and the arena in which both are, which begins at `base`.
+    These hold the step [s], ncon, nefc, the addresses of efc_R and efc_force, and the arena in
+    which both are, which begins at `base`.
     """
 
     model: int
@@ -67,14 +64,7 @@ def drive(
 ) -> int:
     """Take up to so many steps while the run goes on; return how many were taken.
 
-    Parameters
-    ----------
-    holds : sequence of ContactState (1,), updated
-    arrays : Arrays, written
-    memory : Memory, of the same model and data
-    runs, lists
-        As for `engines.run.look.onward`, updated.
-    most : int, how many; with 0 the state is read, and nothing is taken
+    runs and lists are as for `engines.run.look.onward`; with most = 0 the state is read alone.
     """
     held = holds[0]
     read(held, arrays)
@@ -152,7 +142,10 @@ def usable() -> bool:
         mj: Any = import_module("mujoco")
         (library,) = Path(mj.__file__).parent.glob("*mujoco.*[!y]")
         llvmlite.binding.load_library_permanently(str(library))
-        model = mj.MjModel.from_xml_string(PROBE)
+        model = mj.MjModel.from_xml_string(
+            '<mujoco><worldbody><geom type="plane" size="1 1 1"/><body pos="0 0 0.09"><freejoint/>'
+            '<geom type="sphere" size="0.1"/></body></worldbody></mujoco>'
+        )
         data = mj.MjData(model)
         memory = memory_of(model, data)
         memory.timestep[0] = 0.0007
@@ -160,13 +153,8 @@ def usable() -> bool:
         forces = forces_in(memory)
     except Exception:  # whatever is different about another build
         return False
-    pairs = (
-        (model.opt.timestep, 0.0007),
-        (data.time, 0.0007),
-        (data.ncon, forces.contacts),
-        (data.nefc, forces.rows),
-        (data.narena, memory.arena.nbytes),
-        (data.efc_R.tolist(), forces.resistance.tolist()),
-        (data.efc_force.tolist(), forces.force.tolist()),
-    )
-    return data.nefc > 0 and all(found == read for found, read in pairs)
+    found = (model.opt.timestep, data.time, data.ncon, data.nefc, data.narena)
+    rows = (data.efc_R.tolist(), data.efc_force.tolist())
+    expected = (0.0007, 0.0007, forces.contacts, forces.rows, memory.arena.nbytes)
+    there = (forces.resistance.tolist(), forces.force.tolist())
+    return data.nefc > 0 and (found, rows) == (expected, there)

@@ -75,55 +75,38 @@ class BulletSettings:
         "box", "corners" (small spheres where the corners at the base are) or "hull" (a convex mesh
         of the block's eight corners); of the base "plane" or "box".
     planar : bool
-        Put two corner spheres into the middle plane instead of four at the edges; a box has its
-        four corners either way.
+        Put two corner spheres into the middle plane instead of four at the edges.
     multibody : bool
         Build the block in reduced coordinates, as the library does by default.
     friction : float
-        Coefficient between block and base, at most 10; by default not the library's own, 0.5, with
-        which a block of H/B = 2 slides before it rocks.
-    corner_radius : float
-        Radius of the corner spheres over the width; less where they would roll out of the gap that
-        `gap_by_step` keeps.
+        Coefficient between block and base; by default not the library's own, 0.5, with which a
+        block of H/B = 2 slides before it rocks.
+    corner_radius, breaking_threshold : float
+        Radius of the corner spheres over the width; gap, over the half diagonal, up to which a
+        contact is kept. The library holds the gap once for the whole process.
+    gap_by_step : bool
+        Keep contacts up to a gap of `KEPT_GAP` instead, out of which no sphere rolls.
     exact_inertia : bool
-        Set the moments of inertia of the homogeneous block instead of those the library derives
-        from the collision shape.
-    damping : float or None
-        Linear and angular damping of the block.
-    iterations, residual : int, float or None
-        Of the contact solver: how many at most, and the squared velocity [m2/s2] at which they end.
-    sweeps : float or None
-        Iterations over 1/sin^2(alpha), where `iterations` are None.
+        Set the block's moments of inertia instead of those of its collision shape.
+    iterations, sweeps, residual : int, float, float or None
+        Of the solver: how many at most, or their number over 1/sin^2(alpha), and the squared
+        velocity [m2/s2] at which they end.
     contact_erp, friction_erp, constraint_erp : float or None
         Part of a position error that a step corrects: of contacts, of their friction anchor, and
         of the constraint that holds a base.
-    friction_anchor : bool
-        Hold the point of contact by its position, too.
-    contact_slop : float or None
-        Penetration [m] that is left alone.
-    breaking_threshold : float
-        Gap, over the half diagonal, up to which a contact is kept. The library holds this once
-        for the whole process, so every scene sets it.
-    gap_by_step : bool
-        Keep contacts up to a gap of 4 (p dt sin(alpha))^2 half diagonals instead.
     by_phase : bool
         Correct no positions in the short steps around an impact, and no slip at rest.
     floor : str
         How a base that moves is moved: by a "constraint", which holds a box with a mass, by its
         "velocity", or by "position" alone.
-    solver : str or None
-        Of the contacts: "sequential impulse", "PGS" or "Dantzig".
-    warm_starting : float or None
-        Part of the last step's impulses from which the solver starts.
-    split_impulse, cone_friction, separating_axis : bool or None
-        Correct penetration without giving it a velocity; bound friction by a cone instead of a
-        pyramid; find contacts of polyhedra by separating axes.
     restitution, base_restitution : float or None
         Coefficients of the block and of the base, which the library multiplies.
-    restitution_threshold : float or None
-        Speed [m/s] below which nothing bounces.
     contact_stiffness, contact_damping : float or None
         Of a yielding contact, over m p^2 and m p; both or neither.
+    damping, friction_anchor, contact_slop, solver, warm_starting, split_impulse, cone_friction
+    separating_axis, restitution_threshold
+        As the library has them: drag of the block; whether the point of contact is held by its
+        position, too; penetration [m] that is left alone; ...
     """
 
     geometry: str = setting("box", names=("box", "corners", "hull"))
