@@ -1,9 +1,7 @@
 """PyBullet: its clients, its solver at rest."""
 
 import itertools
-import multiprocessing
-import signal
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
@@ -46,27 +44,6 @@ def test_threads_do_not_disturb_each_other():
     alone = [answer(number) for number in range(6)]
     with ThreadPoolExecutor(3) as pool:
         assert list(pool.map(answer, 4 * list(range(6)))) == 4 * alone
-
-
-@pytest.mark.parametrize("method", ["fork", "spawn"])
-def test_processes_answer_alike(method):
-    here = answer(1)
-    with ProcessPoolExecutor(1, multiprocessing.get_context(method)) as pool:
-        assert pool.submit(answer, 1).result() == here
-
-
-def test_a_signal_ends_a_run():
-    def stop(number, frame):
-        raise InterruptedError
-
-    before = signal.signal(signal.SIGALRM, stop)
-    try:
-        signal.setitimer(signal.ITIMER_REAL, 0.2)
-        with pytest.raises(InterruptedError):
-            rocked("pybullet", pulse(0.5, 1.0), preset="fixed", duration=1e5)
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
 
 
 def test_the_solver_ends_by_itself_at_rest():
