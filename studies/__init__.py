@@ -137,13 +137,13 @@ def side_by_side(
 
     if isinstance(sources, str) or not (sources := list(sources)):
         raise ValueError(f"sources is {sources!r}; it must be a list of one name or more")
-    given = {"duration": duration, "friction": friction, "dt": dt}
-    duration, friction, dt = (
-        None if value is None else finite(name, value) for name, value in given.items()
-    )
     if len(start) != 2:
         raise ValueError(f"start is {start!r}; it must be theta [rad] and theta' [rad/s]")
     start = (finite("start", start[0]), finite("start", start[1]))
+    duration, friction, dt = (
+        None if value is None else finite(name, value)
+        for name, value in (("duration", duration), ("friction", friction), ("dt", dt))
+    )
     try:
         window = window_of(block, motion, duration)
         refuse_endless(block, window, duration=duration, dt=dt)
@@ -155,23 +155,13 @@ def side_by_side(
 
 
 def table(response: Response) -> pd.DataFrame:
-    """Return the history of a response as a table.
-
-    Parameters
-    ----------
-    response : Response
-        That was asked for with `times`.
+    """Return the history of a response that was asked for with `times`, as a table.
 
     Returns
     -------
     DataFrame
         time_s [s], theta_rad [rad] and velocity_rad_s [rad/s], a row for each time until the
-        response ends.
-
-    Raises
-    ------
-    ValueError
-        If it has no history.
+        response ends; ValueError if it has no history.
 
     Examples
     --------
@@ -184,15 +174,11 @@ def table(response: Response) -> pd.DataFrame:
     """
     import pandas as pd
 
-    if response.history is None:
+    if (history := response.history) is None:
         raise ValueError("the response has no history; ask for one with times=...")
-    history = response.history
-    columns = {
-        "time_s": history.time,
-        "theta_rad": history.theta,
-        "velocity_rad_s": history.velocity,
-    }
-    return pd.DataFrame(columns)
+    columns = history.time, history.theta, history.velocity
+    names = ("time_s", "theta_rad", "velocity_rad_s")
+    return pd.DataFrame(dict(zip(names, columns, strict=True)))
 
 
 def plot(response: Response, axes: Axes | None = None) -> Axes:
@@ -201,19 +187,9 @@ def plot(response: Response, axes: Axes | None = None) -> Axes:
     Parameters
     ----------
     response : Response
-        That was asked for with `times`.
+        That was asked for with `times`; ValueError if it has no history.
     axes : matplotlib.axes.Axes, optional
-        Where to draw; a figure of its own by default.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        A notebook shows those of a figure of its own as a picture.
-
-    Raises
-    ------
-    ValueError
-        If it has no history.
+        Where to draw; a figure of its own by default, which a notebook shows as a picture.
 
     Examples
     --------

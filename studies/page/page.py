@@ -22,7 +22,7 @@ from studies.measures.presets import in_order, in_words
 from studies.measures.wrongness import KINDS, MEANINGS, WORDS, in_kinds
 from studies.page.chapters import CHAPTERS, PARTS, Part
 from studies.page.facts import presets
-from studies.sources.registry import resolve
+from studies.sources.registry import Source, resolve
 from studies.sweep import STUDY as SWEEP
 
 GOOD, BAD = 1e-3, 0.1
@@ -36,12 +36,11 @@ AXES = ("half_cycles", "aspect", "width_m", "onsets", "omega_over_p")
 def write_page(path: Path, folder: Path, full: bool) -> None:
     """Write the page about a folder that holds one for each of PARTS, filled in full or not."""
     environment = Environment(loader=PackageLoader("studies.page", "."), autoescape=True)
-    chapters = {
-        title: [_section(one, folder / one.folder, full) for one in parts]
-        for title, parts in CHAPTERS.items()
-    }
     text = environment.get_template("page.html").render(
-        chapters=chapters,
+        chapters={
+            title: [_section(one, folder / one.folder, full) for one in parts]
+            for title, parts in CHAPTERS.items()
+        },
         made=_made(folder / PARTS[0].folder),
         full=full,
         shown=SHOWN,
@@ -158,10 +157,8 @@ def engine_cases(folder: Path) -> dict[str, Any]:
     rows = table_in(folder / "defaults", "defaults")
     if rows.empty:
         return {"peaks": {}}
-    rows = rows.assign(
-        half_cycles=rows["pulse"].map(PULSES),
-        peak=rows["peak_ratio"].mask(rows["outcome"] == "overturned", -1.0),
-    )
+    peak = rows["peak_ratio"].mask(rows["outcome"] == "overturned", -1.0)
+    rows = rows.assign(half_cycles=rows["pulse"].map(PULSES), peak=peak)
     axes = {name: sorted(rows[name].unique().tolist()) for name in AXES}
     order = pd.MultiIndex.from_product(list(axes.values()), names=AXES)
     wide = rows.pivot(index=list(AXES), columns="source", values="peak").reindex(order)
@@ -169,19 +166,17 @@ def engine_cases(folder: Path) -> dict[str, Any]:
         str(name): [float(f"{peak:.5g}") if math.isfinite(peak) else None for peak in wide[name]]
         for name in rows["source"].unique()
     }
-    slides = rows[rows["verdict"] == "invalid"].drop_duplicates(list(AXES))
-    judged = 1 - order.isin(pd.MultiIndex.from_frame(slides[list(AXES)])).astype(int)
-    rests = rows.drop_duplicates(list(AXES)).set_index(list(AXES))["rest_s"].reindex(order)
+    cases = rows.assign(slides=rows["verdict"] == "invalid").groupby(list(AXES))
+    slides = cases["slides"].any().reindex(order, fill_value=False)
     return {
         **axes,
         "peaks": found,
-        "judged": judged.tolist(),
-        "rests": rests.tolist(),
-        "written": list(filter(written_out, found)),
+        "judged": (1 - slides.astype(int)).tolist(),
+        "rests": cases["rest_s"].first().reindex(order).tolist(),
+        "written": [name for name in found if _is_written(resolve(name))],
     }
 
 
-def written_out(source: str) -> bool:
+def _is_written(source: Source) -> bool:
     """Return whether `rocking export` writes a source out: an engine with equal steps."""
-    asked = resolve(source)
-    return bool(asked.engine and asked.declared.script) and not asked.accurate
+    return bool(source.engine and source.declared.script) and not source.accurate

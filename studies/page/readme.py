@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from analytic.block import GRAVITY, RigidBlock
+from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines.troubles import TROUBLES
 from studies.cases.paper import free_rocking_window
@@ -37,8 +37,7 @@ PAGES = {
     PUBLISHED / "scenes.md": "scenes.md.jinja",
 }
 """Page -> its template."""
-BLOCK = RigidBlock(width=0.5, height=1.5)
-PULSE = SinePulse(amplitude=0.4 * GRAVITY, omega=6.2832, half_cycles=2)
+BLOCK, PULSE = RigidBlock(width=0.5, height=1.5), SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
 SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
 
 
@@ -82,17 +81,16 @@ def measure_hero() -> pd.DataFrame:
     for name in SOURCES:
         response = ask(Job(labels={}, case=case, source=name))
         labels = {"source": name, "peak_ratio": response.peak_ratio}
-        found = samples(response, BLOCK, PULSE, labels)
-        parts.append(found[["source", "outcome", "peak_ratio", "time_s", "theta_ratio"]])
-    return pd.concat(parts, ignore_index=True).round({"time_s": 9, "theta_ratio": 9})
+        parts.append(samples(response, BLOCK, PULSE, labels))
+    found = pd.concat(parts, ignore_index=True).round({"time_s": 9, "theta_ratio": 9})
+    return found[["source", "outcome", "peak_ratio", "time_s", "theta_ratio"]]
 
 
 def summary(histories: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each source: its outcome, its peak and the error of that."""
-    lines = histories.groupby("source", sort=False)[["outcome", "peak_ratio"]].first().reset_index()
-    exact = float(lines.loc[lines["source"] == "exact", "peak_ratio"].iloc[0])
-    survived = lines["outcome"] == "rocked"
-    return lines.assign(error=(lines["peak_ratio"] / exact - 1.0).where(survived))
+    lines = histories.groupby("source", sort=False)[["outcome", "peak_ratio"]].first()
+    errors = lines["peak_ratio"] / float(lines["peak_ratio"]["exact"]) - 1.0
+    return lines.assign(error=errors.where(lines["outcome"] == "rocked")).reset_index()
 
 
 def row(cells: Sequence[object]) -> str:
@@ -103,12 +101,6 @@ def row(cells: Sequence[object]) -> str:
 def table(heads: Sequence[str], rows: Iterable[Sequence[object]] = ()) -> str:
     """Return a Markdown table, a cell of each row for each head."""
     return "\n".join(map(row, (heads, ["---"] * len(heads), *rows)))
-
-
-def in_words_of(one: Part, folder: Path) -> dict[str, Any]:
-    """Return what the pages say of a part, and its pictures."""
-    pictures = [(it.name, one.study.caption_of(it.stem)) for it in sorted(folder.glob("*.png"))]
-    return {**one.found(one.study.read(folder), full=True), "pictures": pictures}
 
 
 def pages(root: Path) -> dict[Path, str]:
@@ -125,20 +117,23 @@ def pages(root: Path) -> dict[Path, str]:
     filters = (capital, duration, facts.once, in_kinds, in_words, part, row)
     environment.filters |= {each.__name__: each for each in filters}
     chapters = {
-        title: [in_words_of(one, published / one.folder) for one in parts if one in known]
+        title: [_told(one, published / one.folder) for one in parts if one in known]
         for title, parts in CHAPTERS.items()
     }
     environment.globals |= {
-        "facts": facts,
-        "table": table,
+        **{"facts": facts, "table": table, "published": published},
         "verdict": SWEEP.finding(SWEEP.read(published / "presets")),
         "chapters": {title: parts for title, parts in chapters.items() if parts},
-        "made": facts.made(published),
-        "presets": facts.presets(published),
-        "published": published,
+        **{"made": facts.made(published), "presets": facts.presets(published)},
         **{"OUTDATED": OUTDATED, "STEPPED": STEPPED, "TROUBLES": TROUBLES},
         **{"WORDS": WORDS, "MEANINGS": MEANINGS},
     }
     return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {
         root / path: environment.get_template(name).render() for path, name in PAGES.items()
     }
+
+
+def _told(one: Part, folder: Path) -> dict[str, Any]:
+    """Return what the pages say of a part, and its pictures."""
+    pictures = [(it.name, one.study.caption_of(it.stem)) for it in sorted(folder.glob("*.png"))]
+    return {**one.found(one.study.read(folder), full=True), "pictures": pictures}

@@ -61,8 +61,6 @@ def _prepare(out: Path, full: bool) -> None:
         if held != kind:
             raise FolderError(out, f"it holds a {held} report; a {kind} one needs another folder")
         write_text(path, kind + "\n")
-    except (FileExistsError, NotADirectoryError) as error:
-        raise FolderError(out, "it must be a folder, not a file") from error
     except OSError as error:
         problem = f"it must be a folder that can be written ({error.strerror or error})"
         raise FolderError(out, problem) from error
