@@ -202,7 +202,7 @@ def plot(response: Response, axes: Axes | None = None) -> Axes:
     """
     from matplotlib.figure import Figure
 
-    from studies.drawing.notebook import ShownAxes
+    from studies.drawing.figures import ShownAxes
 
     history = table(response)
     if axes is None:

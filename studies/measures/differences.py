@@ -33,22 +33,10 @@ OF_FRAMES = ("exact_outcome", "exact_peak", "agrees", "error", "kappa", "kappa_e
 def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     """Add the exact outcome and peak of every case, and the difference of each row from them.
 
-    Parameters
-    ----------
-    rows : DataFrame
-        The columns that `posed_cases` takes, outcome and peak_ratio; of frames also load, aspect
-        and omega_over_p then being those of a column and of the frame.
-
-    Returns
-    -------
-    DataFrame
-        With the further columns exact_outcome, exact_peak, agrees, error (relative) and difference
-        (of abs(theta)/theta_cr), both nan unless both rocked and survived, false_overturning and
-        missed_overturning. kappa = d ln(peak)/d ln(a_p) and kappa_eta = d ln(peak)/d ln(eta) are
-        the factors by which a small relative error of the pulse, or of the velocity ratio at
-        impacts, grows into one of the peak, nan where no peak survives; sensitivity the same of
-        errors of 1e-6 and 1e-4, much larger near the onset and near overturning. Of frames it has
-        OF_FRAMES alone.
+    The rows have the columns that `posed_cases` takes, outcome and peak_ratio; of frames also load,
+    aspect and omega_over_p then being those of a column and of the frame, and OF_FRAMES alone is
+    added. error (relative) and difference (of abs(theta)/theta_cr) are nan unless both rocked and
+    survived; kappa, kappa_eta and sensitivity where no peak survives.
     """
     posed, eta, back = _different(rows)
     peak, outcome = peak_ratios(*posed, restitution=eta)
