@@ -27,7 +27,7 @@ It holds
 - where it can be, ``script``: the scene in the library's own words, by which `rocking export`
   writes it out and `rocking advise` says what to set. The world is built once more with a library
   whose calls are noted (`engines.run.export`), so that a script says what a run does;
-- where its library can be stepped from compiled code, ``drive`` (`engines.world.DrivenWorld`): to
+- where its library can be stepped from compiled code, ``drive`` (`engines.world.World`): to
   the bit what ``step`` and ``state`` give (`Scene.compiled`);
 - where it can hold several bodies, and bodies that rest on others, ``stacks``;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library

@@ -222,7 +222,7 @@ class PhysxWorld:
         self.stage.add_entity(entity)
 
     def step(self, step: Step) -> None:
-        """Advance by a step; see `engines.world.SteppedWorld`."""
+        """Advance by a step."""
         if self._way or self._reflects:
             self._lead(step)
         if step.dt_s != self._dt:

@@ -253,7 +253,7 @@ class RapierWorld:
         return block
 
     def step(self, step: Step) -> None:
-        """Advance by a step; see `engines.world.SteppedWorld`."""
+        """Advance by a step."""
         if step.dt_s != self._dt:
             self.parameters.dt = step.dt_s
         self.world.gravity = (step.pull_x * self._unit, 0.0, step.pull_z * self._unit)

@@ -1,9 +1,9 @@
 """What a built scene is told and must answer: steps, states, and the moment of a velocity."""
 
 import enum
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,14 +124,19 @@ class Pose(NamedTuple):
 class World(Protocol):
     """A built scene, its bodies where and as fast as `Scene.bodies` says.
 
-    One whose base moves may have two attributes more. ``lag_m`` is the largest distance [m] of the
-    base, at the end of a step, from where it should have been. ``base_x_m`` is where the base is
-    [m] as the state is read: poses are relative to it.
+    It may have more. Where its base moves, ``lag_m`` is the largest distance [m] of the base, at
+    the end of a step, from where it should have been, and ``base_x_m`` where the base is [m] as the
+    state is read: poses are relative to it. ``drive(runs, lists, most)`` takes up to so many steps
+    as long as the run goes on, in a compiled loop of the functions of `engines.run.look`, and
+    returns how many; it is None where the library is not as it should be for it.
     """
 
     @property
     def moment(self) -> Moment:
         """At which moment of a step the velocities of a state hold."""
+
+    def step(self, step: Step) -> None:
+        """Advance by a step."""
 
     def state(self) -> Sequence[Sequence[float]] | FloatArray:
         """Read every body's `Pose` back, a row each; the next call may overwrite what it returns.
@@ -151,28 +156,8 @@ class World(Protocol):
         """Release the engine's memory."""
 
 
-class SteppedWorld(World, Protocol):
-    """A world that takes the steps that it is given."""
-
-    def step(self, step: Step) -> None:
-        """Advance by a step."""
-
-
-Driver = Callable[[Any, Any, int], int]
-"""``(runs, lists, most) -> taken``: takes up to so many steps of a run, in a compiled loop that
-chooses each and looks on by the functions of `engines.run.look`, as long as the run goes on."""
-
-
-class DrivenWorld(SteppedWorld, Protocol):
-    """A world that can also take many steps at once."""
-
-    @property
-    def drive(self) -> Driver | None:
-        """What takes them; None where the library is not as it should be for it."""
-
-
 class SelfSteppingWorld(World, Protocol):
-    """A world whose engine chooses its own steps, by its own estimate of the error."""
+    """A world whose engine can choose its own steps, by its own estimate of the error."""
 
     def advance(self, end_s: float) -> int:
         """Advance to a time [s], the base moving as the scene says; return the steps taken."""

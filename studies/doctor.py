@@ -11,7 +11,7 @@ from analytic import simulate
 from analytic.kernels.forms import SOURCES, kept_in
 from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
-from engines.parts.compiled import PACKAGE
+from engines.run.look import PACKAGE
 from studies.cases.paper import HISTORIES
 from studies.kit.arguments import TimeLimit
 from studies.kit.identity import COMPUTING, version_of

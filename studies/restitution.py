@@ -22,7 +22,7 @@ from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES, installed_engines
 from engines.run.run import build
-from engines.world import ContactPhase, Pose, Step, SteppedWorld
+from engines.world import ContactPhase, Pose, Step
 from studies.cases.refusal import BadInputError
 from studies.cases.ways import WAYS, WITHOUT
 from studies.kit.arguments import Engines
@@ -130,7 +130,7 @@ def strike(job: Job) -> tuple[tuple[float, float, float], str]:
     """
     case, labels = job.case, job.labels
     scene = scene_of(case.system, case.motion, job.asked.preset, **job.settings)
-    world = cast("SteppedWorld", build(job.asked.declared.use(scene)))
+    world = build(job.asked.declared.use(scene))
     block = cast("RigidBlock", case.system)
     half_width, half_height = 0.5 * block.width, 0.5 * block.height
     dt, omega = labels["p_dt"] / block.p, labels["rate_over_alpha_p"] * block.p * block.alpha

@@ -29,7 +29,7 @@ from engines.declaration import AT_REST, Engine, Stepping
 from engines.registry import OWN, UnloadableError, named
 from engines.run.run import build
 from engines.settings import perhaps
-from engines.world import ContactPhase, Moment, Step, SteppedWorld
+from engines.world import ContactPhase, Moment, Step, World
 from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments
@@ -309,7 +309,7 @@ def problem_of(engine: str) -> str:
     return ""
 
 
-def world_of(source: Source, start: tuple[float, float] = (0.0, 0.0)) -> SteppedWorld:
+def world_of(source: Source, start: tuple[float, float] = (0.0, 0.0)) -> World:
     """Build a block on a base that is not moved."""
     frame = "base" if "base" in source.declared.frames else None  # a base that moves is pulled, too
     step = DT_S * BLOCK.p

@@ -253,7 +253,7 @@ class DrakeWorld:
         return Moment.MIDDLE if self._s.accuracy is None else Moment.END
 
     def step(self, step: Step) -> None:
-        """Advance by a step; see `engines.world.SteppedWorld`."""
+        """Advance by a step."""
         if self._problem:
             return
         self._field.set_gravity_vector((step.pull_x, 0.0, step.pull_z))

@@ -37,7 +37,7 @@ class NewtonWorld:
         self._fault = self._read_back(scene)
 
     def step(self, step: Step) -> None:
-        """Advance by a step, of which all are equal; see `engines.world.SteppedWorld`."""
+        """Advance by a step, of which all are equal."""
         if step.dt_s != self._dt:
             self._fault = self._fault or "its steps are recorded, and all of one length"
         self._force[0, 0] = self._mass * step.pull_x

@@ -50,7 +50,7 @@ class NewtonStacks:
         self._fault = self._read_back()
 
     def step(self, step: Step) -> None:
-        """Advance by a step, of which all are equal; see `engines.world.SteppedWorld`."""
+        """Advance by a step, of which all are equal."""
         if step.dt_s != self._dt:
             self._fault = self._fault or "its steps are recorded, and all of one length"
         for number, body in enumerate(self._scene.bodies):

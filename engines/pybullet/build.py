@@ -336,7 +336,7 @@ class BulletWorld:
             p.resetBaseVelocity(number, velocity, rate, physicsClientId=client)
 
     def step(self, step: Step) -> None:
-        """Advance by a step; see `engines.world.SteppedWorld`."""
+        """Advance by a step."""
         p, client = self._p, self._client
         if step.dt_s != self._dt or step.phase is not self._phase:
             erp = self._corrected(step) if self._s.by_phase else {}

@@ -4,13 +4,14 @@ See EQUATIONS.md, "The rocking frame".
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from engines.parts.compiled import State, fill, shared
 from engines.scene import Layout
 from engines.world import FloatArray
 
 
-class Spread(State):
+@dataclass(slots=True)
+class Spread:
     """How far the bodies of a frame came apart.
 
     Attributes
@@ -24,37 +25,24 @@ class Spread(State):
         the largest distance by which it slid along the tops [m], at all and until they pass alpha.
     """
 
-    columns: int
-    homes: float
-    parting: float
-    tilt: float
-    drift: float
-    slide: float
+    columns: int = 0
+    homes: float = 0.0
+    parting: float = 0.0
+    tilt: float = 0.0
+    drift: float = 0.0
+    slide: float = 0.0
 
 
-def begin_spread(spread: Spread, layout: Layout) -> None:
-    """Begin where nothing has parted; the body after those that rock is a beam.
-
-    Parameters
-    ----------
-    spread : Spread, to be filled
-    layout : Layout
-    """
-    if 0 < layout.rocking < len(layout.bodies):
-        beam, first = layout.bodies[layout.rocking], layout.bodies[0]
-        fill(spread, columns=layout.rocking, homes=beam.home[0] - 2.0 * first.home[0])
+def begin_spread(layout: Layout) -> Spread:
+    """Return where nothing has parted; the body after those that rock is a beam."""
+    if not 0 < layout.rocking < len(layout.bodies):
+        return Spread()
+    beam, first = layout.bodies[layout.rocking], layout.bodies[0]
+    return Spread(columns=layout.rocking, homes=beam.home[0] - 2.0 * first.home[0])
 
 
-@shared
 def see_spread(spread: Spread, state: FloatArray, alpha: float) -> None:
-    """Take in a state.
-
-    Parameters
-    ----------
-    spread : Spread, updated
-    state : ndarray (bodies, 4), a `Pose` a row
-    alpha : float, slenderness [rad]
-    """
+    """Take in a state (bodies, 4), a `Pose` a row, of columns of the slenderness alpha [rad]."""
     columns = spread.columns
     if columns == 0:
         return
@@ -69,18 +57,7 @@ def see_spread(spread: Spread, state: FloatArray, alpha: float) -> None:
 
 
 def observables_of(spread: Spread, alpha: float) -> Mapping[str, float]:
-    """Return what was seen of a frame; nothing where there is no beam.
-
-    Parameters
-    ----------
-    spread : Spread
-    alpha : float, slenderness [rad]
-
-    Returns
-    -------
-    mapping
-        parting and tilt over alpha, and drift_m [m].
-    """
+    """Return parting and tilt over alpha, and drift_m [m]; nothing where there is no beam."""
     if not spread.columns:
         return {}
     return {

@@ -1,17 +1,48 @@
-"""Steps that end on what happens: impacts, uplifts, and the corners of the base's motion.
+"""Steps that end on what happens: what a landing preset does to an engine, and why it may.
 
-What to expect comes from the poses seen until now and from the base's motion; what happens is the
-engine's, whatever was expected. Before an impact each step covers half of the way that is left, so
-that the contact about which the block turns is never out of reach of the next step; through the
-impact the steps are too short for anything but the contact to act.
+**The trouble.** An engine takes velocities and contact impulses once a step. A block that falls
+onto its free corner does so somewhere within a step, and the engine sees it at the end: the corner
+has gone too deep, or is stopped too early. How far is a matter of chance, and the error, of first
+order in the step, is as large as the step however good the contact is. Peaks before the first
+impact are a hundred times better than those after it.
 
-What functions take is said at `choose`, which calls them all; a `Choice` is the step that follows.
+**The remedy.** A program that steps an engine may choose how long each step is. So the steps are
+chosen to end where something happens:
+
+- *impacts*: from the last two states, the time until the free corner meets the base is a root of a
+  parabola (`until_impact`). Each step then covers half of the way that is left (`APPROACH`), so
+  that the contact about which the block turns never falls out of reach of the next step, until the
+  rest is a millionth of an ordinary step. A few steps that short go through the impact (`STRIKE`):
+  gravity has no time to act in them, the contact alone does, until the rate has settled. The first
+  step after is short, as a contact that has just taken all velocity out of its point lets that rise
+  by the square of the step;
+- *uplifts*: a block at rest lifts where the base's acceleration exceeds g tan(alpha). Those times
+  (`steps.timetable`) are known of the base's motion; a step ends on each, and those before it come
+  slowly, for a sudden change of step would let go of a corner;
+- *corners of the motion*: a step ends where the base's acceleration has a corner or a jump.
+
+Between them steps are ordinary: even parts of what is left, fine enough for a swing (an eighth of
+1/p at least) and for a load. The velocity of a leapfrog engine belongs to the middle of a step, so
+that a step after one of another length needs the kick of both halves: gravity is scaled by
+kick_s/dt_s (`steps.advance`), which is what the engine itself does when steps are equal.
+
+**Why it is legitimate.** A step says how long it is, what it is for, and which corner is expected
+to hold; never what the state becomes. Positions and velocities are set once, before the first
+step. The block lifts, strikes its base and comes to rest by the engine's own contact, whatever is
+expected here: no angle is projected, no velocity overwritten, no restitution given. What the
+ratio of rates at an impact is, only the engine says, and the study measures it. What is known
+beforehand is what anybody knows who looks at the block: its size, g, and the base's motion. Where
+an expectation is wrong the steps are merely chosen badly, and the error is that of equal steps.
+
+**What else a preset does** must be said beside its figures (`Preset.helped_by`): a contact that
+holds as firmly as each phase needs; the pivot's velocity given back while the block turns about it,
+so that its mean over a step is zero; the pivot kept in contact over the gap by which it rises.
 """
 
 import math
+from dataclasses import dataclass
 
-from engines.parts.compiled import State, fill, shared
-from engines.run.timetable import SAME_TIME, Times, even
+from engines.run.steps import SAME_TIME, Pace, even
 from engines.scene import Scene
 from engines.world import Choice, ContactPhase, Moment, Pose, Resolution
 
@@ -69,42 +100,37 @@ TOUCHING = 1e-9
 """A corner lower above the base than this part of the width touches it."""
 
 
-class Landing(State):
-    """What steps that land know of the block, and of what went before.
+@dataclass(slots=True)
+class Landing:
+    """What is known of the block, and of what went before.
 
     Attributes
     ----------
-    dt, least, rest_factor, shortest : float
+    dt, least, longest_rest, shortest : float
         The ordinary step, the shortest one, the longest one of a block at rest, and the shortest
         swing that is followed [s].
     width, half_height, touching : float
         Of the block, and the height below which a corner touches the base [m].
     fall : float
-        p^2 sin(alpha) [rad/s2], by which a block that is upright on one corner is accelerated
-        towards the other (EQUATIONS.md, "From (1) and (2)"), times the hint of the scene.
-    swing_part, load_part : float
-        Parts of a swing and of a load that a step may cover.
-    settled : float
-        Change of the angular velocity, by its part, with which an impact is over.
-    part : float
-        Part of a step that has passed at the moment of its velocity.
+        p^2 sin(alpha) [rad/s2], by which an upright block on one corner falls to the other.
+    swing_part, load_part, settled, part : float
+        Parts of a swing and of a load that a step may cover; change of the rate, by its part, with
+        which an impact is over; moment of a step's velocity.
     side : float
         Corner that the block turns about.
     resting, bouncing, approaching : bool
-        Whether the block is at rest, whether an impact began its swing, and whether the next one
-        is being approached.
-    strikes : int
-        Steps through the present impact, each of strike_s [s].
+        Whether the block is at rest, an impact began its swing, the next one is approached.
+    strikes, strike_s : int, float
+        Steps through the present impact, and their length [s].
     last_dt, last_approach, last_rate : float, bool, float
-        Of the last step: its length [s], whether it was one of an approach, and the angular
-        velocity [rad/s] before it.
+        Length [s] of the last step, whether it was of an approach, the rate [rad/s] before it.
     between : float
         Time [s] between the moments of the last two velocities.
     """
 
     dt: float
     least: float
-    rest_factor: float
+    longest_rest: float
     shortest: float
     width: float
     half_height: float
@@ -116,43 +142,34 @@ class Landing(State):
     part: float
     side: float
     resting: bool
-    bouncing: bool
-    approaching: bool
-    strikes: int
-    strike_s: float
-    last_dt: float
-    last_approach: bool
-    last_rate: float
-    between: float
+    bouncing: bool = False
+    approaching: bool = False
+    strikes: int = 0
+    strike_s: float = 0.0
+    last_dt: float = 0.0
+    last_approach: bool = False
+    last_rate: float = 0.0
+    between: float = 0.0
 
 
-def begin_landing(
-    to: Landing, scene: Scene, dt_s: float, moment: Moment, resolution: Resolution
-) -> None:
-    """Prepare for steps that end on impacts, on uplifts and on the corners of the base's motion.
+def begin_landing(scene: Scene, dt_s: float, moment: Moment, resolution: Resolution) -> Landing:
+    """Return what landing steps begin with.
 
     Parameters
     ----------
-    to : Landing
-        What is filled.
     scene : Scene
-        What is being simulated.
-    dt_s : float
-        Ordinary step [s].
-    moment : Moment
-        At which moment of a step the engine's velocity holds.
-    resolution : Resolution
-        What the engine's numbers tell apart: nothing finer is asked of it.
+    dt_s : float, ordinary step [s]
+    moment : Moment, of a step, at which the engine's velocity holds
+    resolution : Resolution, what the engine's numbers tell apart: nothing finer is asked of it
     """
     block = scene.system
     fall = block.p**2 * math.sin(block.alpha)
     # a swing that rises by no more than the engine's numbers tell apart
     unseen = 2.0 * math.sqrt(2.0 * resolution.length_m / (block.width * fall))
-    fill(
-        to,
+    return Landing(
         dt=dt_s,
         least=max(NEAR * dt_s, resolution.time_s),
-        rest_factor=resolution.rest_factor * dt_s,
+        longest_rest=resolution.rest_factor * dt_s,
         shortest=max(SHORTEST_SWING / block.p, resolution.time_s / COARSEST, unseen),
         width=block.width,
         half_height=0.5 * block.height,
@@ -167,72 +184,68 @@ def begin_landing(
     )
 
 
-@shared
-def choose(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
+def choose(to: Landing, pace: Pace, pose: Pose, lifted: bool) -> Choice:
     """Choose the next step.
 
     Parameters
     ----------
     to : Landing, moved on
-    times : Times, where the run stands
+    pace : Pace, where the run stands
     pose : Pose, of the block after the last step
     lifted : bool, whether it is aloft
     """
     if to.strikes:
-        choice = through(to, times, pose)
+        choice = through(to, pace, pose)
     elif to.resting and not lifted:
-        choice = at_rest(to, times)
+        choice = at_rest(to, pace)
     else:
-        choice = aloft(to, times, pose, lifted)
+        choice = aloft(to, pace, pose, lifted)
     to.between = to.part * choice.dt_s + (1.0 - to.part) * to.last_dt
     to.last_dt, to.last_approach = choice.dt_s, choice.phase == ContactPhase.APPROACH
     to.last_rate = pose.rate
     return choice
 
 
-@shared
-def at_rest(to: Landing, times: Times) -> Choice:
+def at_rest(to: Landing, pace: Pace) -> Choice:
     """Step on through the calm, the longer the more is left; come slowly where the block may lift.
 
     Whatever corners the base's motion has meanwhile, and in equal steps near the onset, where a
     corner carries little.
     """
-    if times.loaded:
-        to.side = times.load_side
-        return Choice(even(times.left, resolving(to, times)), ContactPhase.REST, to.side)
+    if pace.loaded:
+        to.side = pace.load_side
+        return Choice(even(pace.left, resolving(to, pace)), ContactPhase.REST, to.side)
     to.side = 0.0
-    if UPLIFT_PART * times.time_to_uplift > to.dt:
-        longest = max(min((1.0 + UPLIFT_PART) * to.last_dt, to.rest_factor), to.dt)
-        return Choice(min(UPLIFT_PART * times.time_to_uplift, longest), ContactPhase.REST, 0.0)
-    if not times.lifts_next or times.time_to_uplift * (1.0 - SAME_TIME) > to.dt:
-        return Choice(even(times.time_to_uplift, to.dt), ContactPhase.REST, 0.0)
+    if UPLIFT_PART * pace.time_to_uplift > to.dt:
+        longest = max(min((1.0 + UPLIFT_PART) * to.last_dt, to.longest_rest), to.dt)
+        return Choice(min(UPLIFT_PART * pace.time_to_uplift, longest), ContactPhase.REST, 0.0)
+    if not pace.lifts_next or pace.time_to_uplift * (1.0 - SAME_TIME) > to.dt:
+        return Choice(even(pace.time_to_uplift, to.dt), ContactPhase.REST, 0.0)
     # a short last step, or the first one aloft would feel forces of the time before
-    part = 1.0 if times.time_to_uplift <= UPLIFT_NEAR * to.dt else 1.0 - REMAINDER
-    return Choice(part * times.time_to_uplift, ContactPhase.REST, times.load_side)
+    part = 1.0 if pace.time_to_uplift <= UPLIFT_NEAR * to.dt else 1.0 - REMAINDER
+    return Choice(part * pace.time_to_uplift, ContactPhase.REST, pace.load_side)
 
 
-@shared
-def aloft(to: Landing, times: Times, pose: Pose, lifted: bool) -> Choice:
+def aloft(to: Landing, pace: Pace, pose: Pose, lifted: bool) -> Choice:
     """Step on until an impact is near."""
     if to.resting:
         to.resting = to.bouncing = False
     if lifted and not to.approaching:
         to.side = math.copysign(1.0, pose.theta)
     if to.bouncing and not lifted and swing_s(to, pose) < to.shortest:
-        return settle(to, times)
-    longest = resolving(to, times)
+        return settle(to, pace)
+    longest = resolving(to, pace)
     if to.bouncing:
         longest = resolving_swing(to, pose, longest)
     if to.between == 0.0:
         longest = FIRST_PART * longest
     ahead = until_impact(to, pose)
     to.approaching = to.approaching and ahead < math.inf
-    if to.approaching or ahead < min(2.0 * longest, times.left):
+    if to.approaching or ahead < min(2.0 * longest, pace.left):
         return towards_impact(to, ahead, longest, pose)
-    return Choice(even(times.left, longest), ContactPhase.SWING, to.side)
+    return Choice(even(pace.left, longest), ContactPhase.SWING, to.side)
 
 
-@shared
 def towards_impact(to: Landing, ahead: float, longest: float, pose: Pose) -> Choice:
     """Leave a part of the way for the next step, or all of it to the shortest steps.
 
@@ -249,7 +262,6 @@ def towards_impact(to: Landing, ahead: float, longest: float, pose: Pose) -> Cho
     return Choice(least, ContactPhase.STRIKE, to.side)
 
 
-@shared
 def stands(to: Landing, ahead: float, pose: Pose) -> bool:
     """Return whether the free corner touches the base as it is: what is left no longer halves.
 
@@ -259,8 +271,7 @@ def stands(to: Landing, ahead: float, pose: Pose) -> bool:
     return touches and (1.0 - REMAINDER) * ahead >= to.last_dt
 
 
-@shared
-def through(to: Landing, times: Times, pose: Pose) -> Choice:
+def through(to: Landing, pace: Pace, pose: Pose) -> Choice:
     """Step on in the shortest steps until the impact is over."""
     to.strikes += 1
     settled = abs(pose.rate - to.last_rate) <= to.settled * abs(pose.rate)
@@ -269,20 +280,18 @@ def through(to: Landing, times: Times, pose: Pose) -> Choice:
         return Choice(to.strike_s, ContactPhase.STRIKE, to.side)
     to.strikes, to.bouncing = 0, True
     if swing_s(to, pose) < to.shortest:
-        return settle(to, times)
+        return settle(to, pace)
     to.side = math.copysign(1.0, pose.rate)
-    longest = resolving_swing(to, pose, resolving(to, times))
-    return Choice(even(times.left, FIRST_PART * longest), ContactPhase.SWING, to.side)
+    longest = resolving_swing(to, pose, resolving(to, pace))
+    return Choice(even(pace.left, FIRST_PART * longest), ContactPhase.SWING, to.side)
 
 
-@shared
-def settle(to: Landing, times: Times) -> Choice:
+def settle(to: Landing, pace: Pace) -> Choice:
     """Leave the block to its contacts."""
     to.resting = True
-    return at_rest(to, times)
+    return at_rest(to, pace)
 
 
-@shared
 def until_impact(to: Landing, pose: Pose) -> float:
     """Return the time [s] until the free corner meets the base, if the acceleration stays."""
     bend = -to.fall
@@ -296,14 +305,12 @@ def until_impact(to: Landing, pose: Pose) -> float:
     return max(2.0 * angle / (math.sqrt(inside) - rate), 0.0)
 
 
-@shared
 def gap(to: Landing, pose: Pose) -> float:
     """Return the height [m] of the free corner above the base."""
     raised = 0.5 * to.side * to.width * math.sin(pose.theta)
     return pose.z - to.half_height * math.cos(pose.theta) + raised
 
 
-@shared
 def swing_s(to: Landing, pose: Pose) -> float:
     """Return the duration [s] of the swing from one impact to the next, were there no load."""
     # the higher corner's height tells a swing from a block that leans in a soft contact
@@ -313,15 +320,13 @@ def swing_s(to: Landing, pose: Pose) -> float:
     return 2.0 * launched / to.fall
 
 
-@shared
-def resolving(to: Landing, times: Times) -> float:
+def resolving(to: Landing, pace: Pace) -> float:
     """Return the longest step [s] that resolves the load."""
-    if times.load_s == math.inf:
+    if pace.load_s == math.inf:
         return to.dt
-    return min(to.dt, max(times.load_s * to.load_part, LEAST_LOAD * to.dt))
+    return min(to.dt, max(pace.load_s * to.load_part, LEAST_LOAD * to.dt))
 
 
-@shared
 def resolving_swing(to: Landing, pose: Pose, longest: float) -> float:
     """Return the longest step [s], up to `longest`, that resolves a swing between impacts."""
     return min(longest, max(swing_s(to, pose), to.shortest) * to.swing_part)

@@ -1,98 +1,122 @@
-"""One look a step: take in where the block is, and choose the step that follows.
+"""One look a step: take in where the bodies are, and choose the step that follows.
 
-All that a run has to know beside the engine is kept in one `Run`, which compiled functions read and
-write: `look` is called once a step for any world, or from within a world's own compiled loop.
+`look`, and all that it calls in this folder, are plain functions of plain states. A few short runs
+are looked at by them as they are; for more, `compiled` makes one compiled function of them, to the
+bit the same, whose states are numpy's records.
 """
 
-from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
+import inspect
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, ClassVar, NamedTuple, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
-from analytic.response import History, Problem, Response
+from analytic.kernels.kept import FULL, are_compiled, cache_folder, kept_in
 from engines.declaration import Stepping
-from engines.parts.compiled import State, interpreted, kernel, shared, spend
-from engines.run.answer import problem_of, response_of, slide_response, together
-from engines.run.frame import Spread, begin_spread, observables_of, see_spread
+from engines.run.frame import Spread, begin_spread, see_spread
 from engines.run.ground import rows_of
-from engines.run.history import sample
+from engines.run.landing import Landing, begin_landing, choose
 from engines.run.slide import Slide, begin_slide, see_slide
-from engines.run.steps import Pace, begin_pace, next_step
-from engines.run.timetable import timetable
+from engines.run.steps import FIXED, LANDING, Pace, advance, begin_pace, even, pass_to, timetable
 from engines.run.watch import EVENTS_A_LOOK, Row, Watch, begin_watch, see
 from engines.scene import Scene
-from engines.world import UNLIMITED, ContactPhase, FloatArray, Moment, Pose, Resolution, Step
+from engines.world import (
+    UNLIMITED,
+    Choice,
+    ContactPhase,
+    FloatArray,
+    Moment,
+    Pose,
+    Resolution,
+    Step,
+)
 
-Lists = tuple[Any, FloatArray, FloatArray, FloatArray, FloatArray]
-"""The ground, the stops and the loads, as for `engines.run.steps.next_step`; and of each body that
-rocks the rows of a history (bodies, k, 4), a `Row` each, and the events (bodies, k, 4), their
-columns as in `engines.run.watch`."""
+PACKAGE = Path(__file__).parents[1]
+"""The folder of all that is compiled here."""
 
 PHASE, PHASES = Step._fields.index("phase"), tuple(ContactPhase)
 
 
-class Run(State):
+@dataclass(slots=True)
+class Run:
     """What is known of a run: how it steps, and what was seen.
 
-    A run has one for each body that rocks, and one where there is none; the first one steps, and
-    sees what concerns all.
-
-    Attributes
-    ----------
-    pace : Pace
-    watch : Watch
-        Of the body, where it rocks.
-    spread : Spread
-        Of a frame.
-    slide : Slide
-        Of a box that slides.
+    There is one for each body that rocks, and one where there is none; the first one steps, and
+    sees what concerns all. Where nothing rocks its watch is that of the box, and is not used.
     """
 
     pace: Pace
+    landing: Landing
     watch: Watch
     spread: Spread
     slide: Slide
 
 
-@shared
-def onward(runs: Sequence[Run], lists: Lists, state: FloatArray) -> Step:
-    """Return the step that follows a state, and advance to its end.
+class Lists(NamedTuple):
+    """What of a run grows with the motion and with time.
+
+    ground (m + 1, 8), stops (k,) and loads (l, 3) as of `ground` and `steps`; of each body that
+    rocks the rows of a history (bodies, k, 4) and the events (bodies, k, 4) as of `watch`.
+    """
+
+    ground: FloatArray
+    stops: FloatArray
+    loads: FloatArray
+    rows: FloatArray
+    events: FloatArray
+
+
+def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray) -> bool:
+    """See a state, and choose the next step unless the run is over; return whether it goes on.
 
     Parameters
     ----------
-    runs : sequence of Run, one for each body that rocks
-    lists : tuple, see `Lists`
+    runs : sequence of Run, updated
+    lists : Lists, whose rows and events are written
+    step : ndarray (10,), where the next `Step` is written
     state : ndarray (bodies, 4), a `Pose` a row
     """
-    ground, stops, loads, _, _ = lists
+    if runs[0].pace.time > 0.0 and not undecided(runs, lists, state):
+        return False
+    chosen = next_step(runs, lists, state)
+    step[0], step[1], step[2] = chosen.dt_s, chosen.end_s, chosen.kick_s
+    step[3], step[4] = chosen.pull_x, chosen.pull_z
+    step[5], step[6], step[7] = chosen.base_kick, chosen.base_velocity, chosen.base_x
+    step[8], step[9] = chosen.phase, chosen.side
+    return True
+
+
+def next_step(runs: Sequence[Run], lists: Lists, state: FloatArray) -> Step:
+    """Return the step that follows a state, and advance to its end; see `look`."""
     run = runs[0]
-    return next_step(run.pace, ground, stops, loads, pose_in(state, 0), run.watch.lifted)
+    pace = run.pace
+    choice = Choice(pace.dt, ContactPhase.SWING, 0.0)
+    if pace.policy != FIXED:
+        pass_to(pace, lists.stops, lists.loads)
+        if pace.policy == LANDING:
+            choice = choose(run.landing, pace, pose_in(state, 0), run.watch.lifted)
+        else:
+            choice = Choice(even(pace.left, pace.dt), ContactPhase.SWING, 0.0)
+    return advance(pace, lists.ground, choice)
 
 
-@shared
 def pose_in(state: FloatArray, body: int) -> Pose:
     """Return the pose of a body in a state."""
     row = state[body]
     return Pose(row[0], row[1], row[2], row[3])
 
 
-@shared
 def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
-    """See the state at the end of the step; return whether the run goes on.
-
-    Parameters
-    ----------
-    runs, lists, state
-        As for `onward`.
-    """
-    _, _, _, rows, events = lists
+    """See the state at the end of a step; return whether the run goes on; see `look`."""
     first = runs[0]
+    pace = first.pace
     if first.slide.on:
-        see_slide(first.slide, rows[0], events[0], first.pace.time, pose_in(state, 0))
+        see_slide(first.slide, lists.rows[0], lists.events[0], pace.time, pose_in(state, 0))
         return not (first.slide.done or first.slide.problem)
     see_spread(first.spread, state, first.watch.alpha)
     first.watch.beam_slide = first.spread.slide
@@ -101,52 +125,15 @@ def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
         watch = runs[body].watch
         if not watch.done:
             pose = pose_in(state, body)
-            see(watch, rows[body], events[body], first.pace.time, first.pace.last_dt, pose)
+            see(watch, lists.rows[body], lists.events[body], pace.time, pace.last_dt, pose)
         if watch.problem or watch.overturned:
             return False
         goes_on = goes_on or not watch.done
     return goes_on
 
 
-@kernel
-def monitor(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray) -> bool:
-    """See a state, and choose the next step unless the run is over; return whether it goes on.
-
-    Parameters
-    ----------
-    runs, lists, state
-        As for `onward`; the runs are updated, and lists written.
-    step : ndarray (10,), where the next step is written, as by `put_step`
-
-    Raises
-    ------
-    SpentError
-        If it is interpreted, and one look too many for that.
-    """
-    spend()
-    if runs[0].pace.time > 0.0 and not undecided(runs, lists, state):
-        return False
-    put_step(step, onward(runs, lists, state))
-    return True
-
-
-@shared
-def put_step(numbers: FloatArray, step: Step) -> None:
-    """Write a step down, for Python to read.
-
-    Parameters
-    ----------
-    numbers : ndarray (10,), to be written in the order of the fields
-    step : Step
-    """
-    numbers[0], numbers[1], numbers[2] = step.dt_s, step.end_s, step.kick_s
-    numbers[3], numbers[4] = step.pull_x, step.pull_z
-    numbers[5], numbers[6], numbers[7] = step.base_kick, step.base_velocity, step.base_x
-    numbers[8], numbers[9] = step.phase, step.side
-
-
 class Monitor:
-    """Looks at a run from Python.
+    """Looks at a run.
 
     Parameters
     ----------
@@ -163,10 +150,9 @@ class Monitor:
 
     Attributes
     ----------
-    runs : array
-        What is known, a `Run` for each body that rocks.
-    lists : tuple
-        And what of it grows with the motion and the run; see `Lists`.
+    runs : sequence of Run
+        What is known; numpy's records where the scene is to be looked at by compiled code.
+    lists : Lists
     """
 
     def __init__(
@@ -178,34 +164,33 @@ class Monitor:
         resolution: Resolution = UNLIMITED,
     ) -> None:
         rocking = scene.layout.rocking
-        self.runs = Run.blank(max(rocking, 1))
-        first = self.runs[0]
-        begin_pace(first.pace, scene, dt_s, stepping, moment, resolution)
+        pace = begin_pace(scene, dt_s, stepping, moment, resolution)
         # with a preset's own friction a slide is said, and is no failure up to SLIDE_WIDTHS
         lands = stepping is Stepping.LANDING and scene.friction is not None
-        for run, body in zip(self.runs, scene.bodies[:rocking], strict=False):
-            begin_watch(run.watch, scene, body, dt_s, lands, moment, resolution)
-        begin_spread(first.spread, scene.layout)
-        if not rocking:
-            begin_slide(first.slide, scene)
+        self.runs: Sequence[Run] = [
+            Run(
+                pace,
+                begin_landing(scene, dt_s, moment, resolution),
+                begin_watch(scene, body, dt_s, lands, moment, resolution),
+                begin_spread(scene.layout),
+                Slide() if rocking else begin_slide(scene),
+            )
+            for body in scene.bodies[: max(rocking, 1)]
+        ]
         ground = np.array(rows_of(scene.motion.segments().tolist()))
-        table = timetable(scene, dt_s, resolution.time_s)
         rows = np.zeros((len(self.runs), 0, len(Row._fields)))
         if scene.times is not None:
             rows = np.array([[Row(0.0, 0.0, *scene.start)]] * len(self.runs))
             for run in self.runs:
                 run.watch.rows = run.slide.rows = 1
-        self.lists: Lists = (ground, *table, rows, np.zeros((len(self.runs), 0, 4)))
-        self._times, self._alpha = scene.times, scene.system.alpha
-        self._numbers = np.zeros(len(Step._fields))
+        events = np.zeros((len(self.runs), 0, 4))
+        self.lists = Lists(ground, *timetable(scene, pace.same), rows, events)
+        self._scene = scene
+        self._look: Any = compiled(look) if scene.compiled else look
+        self._step, self._last = np.zeros(len(Step._fields)), np.empty(0)
         self._shape = len(scene.bodies), len(Pose._fields)
-        self._plain, self._last = interpreted(), np.empty(0)
-        self._monitor: Any = monitor
-
-    @property
-    def watches(self) -> Sequence[Watch]:
-        """What was seen of each body that rocks."""
-        return [run.watch for run in self.runs]
+        if scene.compiled:
+            self.runs = records(self.runs)
 
     @property
     def goes_on(self) -> bool:
@@ -213,41 +198,37 @@ class Monitor:
         slide = self.runs[0].slide
         if slide.on:
             return not (slide.done or slide.problem)
-        spoilt = any(watch.problem or watch.overturned for watch in self.watches)
-        return not (spoilt or all(watch.done for watch in self.watches))
+        watches = [run.watch for run in self.runs]
+        spoilt = any(watch.problem or watch.overturned for watch in watches)
+        return not (spoilt or all(watch.done for watch in watches))
 
     def make_room(self, looks: int) -> None:
-        """Make room for what so many looks may write down."""
-        *_, rows, events = self.lists
-        if self._times is not None:
-            kept = max(*(watch.rows for watch in self.watches), self.runs[0].slide.rows)
-            rows = roomy(rows, kept, looks)
-        # the response completes one more
-        used = max(*(watch.events for watch in self.watches), self.runs[0].slide.slips)
-        events = roomy(events, used, EVENTS_A_LOOK * looks + 1)
-        self.lists = (*self.lists[:3], rows, events)
+        """Make room for what so many looks may write down, and one event that completes the last.
+
+        It is there for as many again.
+        """
+        slide, watches = self.runs[0].slide, [run.watch for run in self.runs]
+        rows, events = self.lists.rows, self.lists.events
+        if self._scene.times is not None:
+            rows = _roomy(rows, max(*(watch.rows for watch in watches), slide.rows), looks)
+        used = max(*(watch.events for watch in watches), slide.slips)
+        events = _roomy(events, used, EVENTS_A_LOOK * looks + 1)
+        self.lists = self.lists._replace(rows=rows, events=events)
 
     def next(self, state: ArrayLike) -> Step | None:
         """See the state after a step; return the next step, or None where the run is over.
 
         Parameters
         ----------
-        state : array_like (bodies, 4), a `Pose` a row
-
-        Raises
-        ------
-        ValueError
-            If the state has another shape.
+        state : array_like (bodies, 4), a `Pose` a row; ValueError if it has another shape
         """
         # most engines fill the same array again
         where = self._last if state is self._last else self._checked(state)
         # plain numbers are the faster ones for Python
-        seen: Any = where.tolist() if self._plain else where
-        if not self._monitor(self.runs, self.lists, self._numbers, seen):
+        seen: Any = where if self._scene.compiled else where.tolist()
+        if not self._look(self.runs, self.lists, self._step, seen):
             return None
-        if self._monitor is monitor and not self._plain:
-            self._monitor = monitor.compiled  # it is, by now
-        numbers: list[Any] = self._numbers.tolist()
+        numbers: list[Any] = self._step.tolist()
         numbers[PHASE] = PHASES[int(numbers[PHASE])]
         return Step(*numbers)
 
@@ -259,51 +240,122 @@ class Monitor:
         self._last = where
         return where
 
-    @property
-    def problem(self) -> Problem | None:
-        """Why the response is no longer that of what was posed."""
-        seen: list[Watch | Slide] = [self.runs[0].slide, *self.watches]
-        return next((problem_of(each) for each in seen if each.problem), None)
 
-    def response(self, *, steps: int, wall_s: float) -> Response:
-        """Return what was seen until now."""
-        *_, rows, events = self.lists
-        first = self.runs[0]
-        if first.slide.on:
-            history = self._history(rows[0, : first.slide.rows])
-            found = slide_response(first.slide, events[0], history)
-        else:
-            each = [
-                response_of(run.watch, its_events, self._history(its_rows[: run.watch.rows]))
-                for run, its_rows, its_events in zip(self.runs, rows, events, strict=True)
-            ]
-            found = together(each, observables_of(first.spread, self._alpha))
-        return replace(found, steps=steps, wall_s=wall_s)
-
-    def _history(self, rows: FloatArray) -> History | None:
-        return None if self._times is None else sample(rows, self._times)
-
-
-def compile_monitor() -> None:
-    """Compile what looks at a run, if that has not been done on this machine."""
-    scene = Scene(
-        system=RigidBlock(width=0.5, height=1.5), motion=SinePulse(amplitude=1.0, omega=1.0)
-    )
-    monitor = Monitor(scene, dt_s=1e-3)
-    monitor.make_room(1)
-    monitor.next([[getattr(body.at, name) for name in Pose._fields] for body in scene.bodies])
-
-
-def roomy(tables: FloatArray, used: int, more: int) -> FloatArray:
-    """Return tables, or larger copies, that have room for so many more rows than are used.
-
-    Parameters
-    ----------
-    tables : ndarray (bodies, rows, columns)
-    used, more : int, rows
-    """
+def _roomy(tables: FloatArray, used: int, more: int) -> FloatArray:
+    """Return tables (bodies, rows, columns) that have room for so many more rows than are used."""
     if used + more <= tables.shape[1]:
         return tables
     larger = np.zeros((len(tables), 2 * (used + more), tables.shape[2]))
     larger[:, :used] = tables[:, :used]
     return larger
+
+
+class Patience:
+    """How long this process goes on in Python: to load what was compiled takes as long."""
+
+    LOADING, COMPILING = 20_000, 100_000
+    """Steps in Python that take as long as to load compiled code, and to compile it."""
+
+    left: ClassVar[float | None] = None
+
+
+def compile_all() -> None:
+    """Look at nothing more in Python in this process: there are many cases to come."""
+    Patience.left = 0.0
+
+
+def pays_to_compile(scene: Scene, dt_s: float) -> bool:
+    """Return whether to look by compiled code, which is decided before a run, by its steps."""
+    if not scene.compiled or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        return False
+    if Patience.left is None:
+        Patience.left = Patience.LOADING + (0 if are_compiled(PACKAGE) else Patience.COMPILING)
+    Patience.left -= max(scene.motion.duration, scene.duration or 0.0) / dt_s
+    return Patience.left < 0.0
+
+
+def compile_look() -> None:
+    """Compile what looks at a run, if that has not been done on this machine."""
+    from analytic.block import RigidBlock
+    from analytic.motion import SinePulse
+
+    block, pulse = RigidBlock(width=0.5, height=1.5), SinePulse(amplitude=1.0, omega=1.0)
+    scene = Scene(system=block, motion=pulse)
+    monitor = Monitor(scene, dt_s=1e-3)
+    monitor.make_room(1)
+    monitor.next([[getattr(body.at, name) for name in Pose._fields] for body in scene.bodies])
+
+
+def records(states: Sequence[Any]) -> Any:
+    """Return states as an array of numpy's records, which compiled code reads and writes."""
+    made = np.zeros(len(states), _record(_kind_of(states[0])))
+    made[:] = [_values_of(each) for each in states]
+    return made
+
+
+def _kind_of(state: Any) -> np.dtype[Any]:
+    """Return the type of the record of a state, by what its fields are declared as."""
+    kinds, hints = [], get_type_hints(type(state))
+    for item in fields(state):
+        value, hint = getattr(state, item.name), hints[item.name]
+        if is_dataclass(value):
+            kinds.append((item.name, _kind_of(value)))
+        elif isinstance(value, np.ndarray):
+            kinds.append((item.name, np.dtype((value.dtype, value.shape))))
+        else:
+            kinds.append((item.name, np.dtype(hint)))
+    return np.dtype(kinds, align=True)
+
+
+def _values_of(value: Any) -> Any:
+    if is_dataclass(value):
+        return tuple(_values_of(getattr(value, item.name)) for item in fields(value))
+    return value
+
+
+@cache
+def _record(kind: np.dtype[Any]) -> np.dtype[Any]:
+    """Return one object for equal types: numba would compare two, for long, at every call."""
+    return np.dtype((np.record, kind))
+
+
+@cache
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function of states compiled with all functions that it calls.
+
+    It is kept on disk, where a place can be written, as long as no module of this package changes.
+    """
+    import numba
+
+    _introduce(function)
+    folder = kept_in(PACKAGE)
+    with cache_folder(folder):
+        made: Any = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")(function)
+
+    def call(*given: Any) -> Any:
+        nonlocal made
+        try:
+            return made(*given)
+        except OSError as error:  # the disk is full
+            if error.errno not in FULL:
+                raise
+            made = numba.njit(nogil=True, error_model="numpy")(function)
+            return made(*given)
+
+    return call
+
+
+_known = set[Callable[..., Any]]()
+"""What compiled code may call."""
+
+
+def _introduce(function: Any) -> None:
+    """Let compiled code call the functions that a function calls; Python calls them as they are."""
+    from numba.extending import register_jitable
+
+    for name in function.__code__.co_names:
+        called = function.__globals__.get(name)
+        if inspect.isfunction(called) and called not in _known:
+            _known.add(called)
+            _introduce(called)
+            register_jitable(error_model="numpy", no_cfunc_wrapper=True)(called)

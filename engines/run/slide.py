@@ -5,8 +5,8 @@ See EQUATIONS.md, "The sliding block".
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from engines.parts.compiled import State, fill, shared
 from engines.run.watch import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS, Row, put
 from engines.scene import Scene
 from engines.world import FloatArray, Pose
@@ -24,11 +24,12 @@ STILL_TIME = 0.05
 TREMORS = 20.0
 """A box that trembles where it is counts as at rest after this many times `STILL_TIME`."""
 
-WHEN, DISTANCE, SINCE = range(3)
+STOP, DISTANCE, SINCE = range(3)
 """Columns of slips: the end [s], the distance with its sign [m], the beginning [s]."""
 
 
-class Slide(State):
+@dataclass(slots=True)
+class Slide:
     """What was seen of a box until now.
 
     Attributes
@@ -43,62 +44,55 @@ class Slide(State):
         End of the motion and of the observation [s].
     keeps_rows : bool
         Whether a history is wanted.
-    rows, slips : int
-        How many rows there are, and how many slips have ended.
-    place, time : float
-        Last place relative to the base [m], and when [s].
+    place, origin, stays_at, time : float
+        Last place relative to the base; where it last began to slide, or else came to rest, and
+        where it has moved by no more than a tremor [m]; when it was at the first [s].
+    since, stays_since : float
+        Since when it slides or rests, and trembles at most [s].
     way : float
         Which way it slides, 0 while it does not.
-    since, origin : float
-        When and where it last began to slide, or else came to rest.
-    stays_since, stays_at : float
-        Since when, and where, it has moved by no more than a tremor [s, m].
+    rows, slips : int
+        How many rows there are, and how many slips have ended.
     lift, turn, depth : float
         How high and how deep its centre was seen beyond where it rests [m], and how far it turned
         [rad].
     overturned, done : bool
     problem : int
-        See `observe`, and by how much [m]: far.
+        See `watch`, and by how much [m]: far.
     """
 
-    on: bool
-    home: float
-    half_height: float
-    width: float
-    slow: float
-    still: float
-    motion_end: float
-    end: float
-    keeps_rows: bool
-    rows: int
-    slips: int
-    place: float
-    time: float
-    way: float
-    since: float
-    origin: float
-    stays_since: float
-    stays_at: float
-    lift: float
-    turn: float
-    depth: float
-    overturned: bool
-    done: bool
-    problem: int
-    far: float
+    on: bool = False
+    home: float = 0.0
+    half_height: float = 0.0
+    width: float = 0.0
+    slow: float = 0.0
+    still: float = 0.0
+    motion_end: float = 0.0
+    end: float = 0.0
+    keeps_rows: bool = False
+    place: float = 0.0
+    origin: float = 0.0
+    stays_at: float = 0.0
+    time: float = 0.0
+    since: float = 0.0
+    stays_since: float = 0.0
+    way: float = 0.0
+    rows: int = 0
+    slips: int = 0
+    lift: float = 0.0
+    turn: float = 0.0
+    depth: float = 0.0
+    overturned: bool = False
+    done: bool = False
+    problem: int = 0
+    far: float = 0.0
 
 
-def begin_slide(slide: Slide, scene: Scene) -> None:
-    """Begin where the scene does.
-
-    Parameters
-    ----------
-    slide : Slide, to be filled
-    scene : Scene, of a box that slides
-    """
+def begin_slide(scene: Scene) -> Slide:
+    """Return where a box that slides begins."""
     body, gravity = scene.bodies[0], scene.system.gravity
-    fill(
-        slide,
+    place = body.at.x - body.home[0]
+    return Slide(
         on=True,
         home=body.home[0],
         half_height=0.5 * body.height,
@@ -108,20 +102,19 @@ def begin_slide(slide: Slide, scene: Scene) -> None:
         motion_end=scene.motion.duration,
         end=math.inf if scene.duration is None else scene.duration,
         keeps_rows=scene.times is not None,
-        place=body.at.x - body.home[0],
-        origin=body.at.x - body.home[0],
-        stays_at=body.at.x - body.home[0],
+        place=place,
+        origin=place,
+        stays_at=place,
     )
 
 
-@shared
 def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, pose: Pose) -> None:
     """Take in a pose at the end of a step.
 
     Parameters
     ----------
     slide : Slide, updated
-    rows : ndarray (k, 4), where a history is kept: a `swing.Row` each, with place [m] and velocity
+    rows : ndarray (k, 4), where a history is kept: a `watch.Row` each, with place [m] and velocity
         [m/s] for rotation and rate
     slips : ndarray (k, >= 3), where slips are written
     time : float, end of the step [s]
@@ -158,19 +151,11 @@ def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, po
     slide.done = slide.overturned or over or time >= slide.end
 
 
-@shared
 def end_slip(slide: Slide, slips: FloatArray, time: float, place: float) -> None:
-    """Write down the slip that is under way, if there is one, as ended.
-
-    Parameters
-    ----------
-    slide : Slide, updated
-    slips : ndarray (k, >= 3)
-    time, place : float, when [s] and where, relative to the base [m]
-    """
+    """Write the slip that is under way, if there is one, down as ended at a time and place."""
     if slide.way != 0.0 and abs(place - slide.origin) > LEAST_SLIP * slide.width:
         number = slide.slips
-        slips[number, WHEN], slips[number, SINCE] = time, slide.since
+        slips[number, STOP], slips[number, SINCE] = time, slide.since
         slips[number, DISTANCE] = place - slide.origin
         slide.slips += 1
 

@@ -1,33 +1,28 @@
-"""Steps: how long they are, and what the base does meanwhile."""
+"""Steps: when the base's motion changes or can lift a block, and what the base does in a step."""
 
-from typing import Any
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
+import numpy as np
+
+from analytic.motion import Motion
 from engines.declaration import Stepping
-from engines.parts.compiled import State, fill, shared
-from engines.run import ground as plain
-from engines.run.ground import Ground, mean_velocity_over
-from engines.run.landing import Landing, begin_landing, choose
-from engines.run.timetable import Times, begin_times, even, pass_to
+from engines.run.ground import mean_velocity_over
 from engines.scene import Scene
-from engines.world import (
-    UNLIMITED,
-    Choice,
-    ContactPhase,
-    FloatArray,
-    Moment,
-    Pose,
-    Resolution,
-    Step,
-)
+from engines.world import Choice, FloatArray, Moment, Resolution, Step
 
-for function in (
-    plain.one_minus_sinc,
-    plain.gained,
-    plain.within,
-    plain.segment_at,
-    plain.mean_velocity_over,
-):
-    shared(function)  # they stay Python, for scripts that have nothing else
+SAME_TIME = 1e-9
+"""Times closer than this part of the ordinary step are the same."""
+
+WHOLE = 2.0**53
+"""All numbers from here on are whole."""
+
+PULLS = np.array([1.0, -1.0])
+"""Signs of the acceleration that lift a block, about its left corner and its right one."""
+
+MOST_AT_ONCE = 256
+"""Accelerations that cost not much more together than one does."""
 
 MIDDLE, END = Moment.MIDDLE.value, Moment.END.value
 
@@ -35,27 +30,48 @@ POLICIES = tuple(Stepping)
 FIXED, LANDING, EVEN = map(POLICIES.index, (Stepping.FIXED, Stepping.LANDING, Stepping.OWN))
 
 
-class Pace(State):
-    """How a run steps, and where it is.
+class Load(NamedTuple):
+    """A time [s] during which the base accelerates enough to lift a block at rest.
+
+    side is the corner that the block would turn about, -1 or 1.
+    """
+
+    begin: float
+    end: float
+    side: float
+
+
+NEVER = Load(math.inf, math.inf, 0.0)
+
+
+@dataclass(slots=True)
+class Pace:
+    """How a run steps, and where it is: between the stops that a step must not pass, and the loads.
 
     Attributes
     ----------
     policy : int
         Which of `POLICIES` chooses.
-    dt : float
-        Ordinary step [s].
-    part : float
-        Part of a step that has passed at the moment of its velocity.
-    gravity : float
-        [m/s2].
+    dt, part, gravity : float
+        Ordinary step [s]; part of a step that has passed at the moment of its velocity; [m/s2].
     felt : bool
         Whether the block carries the body force of the base's acceleration, the base being at rest.
+    same : float
+        Difference [s] of two times that are the same.
+    motion_end, end : float
+        Of the motion and of the observation [s].
     time, last_dt : float
         End and length of the last step [s].
     velocity, place : float
         Of the base at the moment of the last velocity [m/s], and at the end of the step [m].
-    times : Times
-    landing : Landing
+    stops, loads : int
+        Stops and loads that have passed.
+    left, time_to_uplift : float
+        Time [s] until the next stop; until a block at rest may lift, or all ends.
+    loaded, lifts_next : bool
+        Whether the first load that has not ended has begun; whether a load is what ends the calm.
+    load_s, load_side : float
+        How long that load lasts [s], inf if there is none, and its side.
     """
 
     policy: int
@@ -63,62 +79,51 @@ class Pace(State):
     part: float
     gravity: float
     felt: bool
-    time: float
-    last_dt: float
-    velocity: float
-    place: float
-    times: Times
-    landing: Landing
+    same: float
+    motion_end: float
+    end: float
+    time: float = 0.0
+    last_dt: float = 0.0
+    velocity: float = 0.0
+    place: float = 0.0
+    stops: int = 0
+    loads: int = 0
+    left: float = 0.0
+    time_to_uplift: float = 0.0
+    loaded: bool = False
+    lifts_next: bool = False
+    load_s: float = 0.0
+    load_side: float = 0.0
 
 
 def begin_pace(
-    pace: Pace,
-    scene: Scene,
-    dt_s: float,
-    stepping: Stepping,
-    moment: Moment = Moment.MIDDLE,
-    resolution: Resolution = UNLIMITED,
-) -> None:
-    """Prepare for the steps of a scene.
+    scene: Scene, dt_s: float, stepping: Stepping, moment: Moment, resolution: Resolution
+) -> Pace:
+    """Return what the steps of a scene begin with.
 
     Parameters
     ----------
-    pace : Pace
-        What is filled.
     scene : Scene
-        What is being simulated.
-    dt_s : float
-        Ordinary step [s]; where an engine has steps of its own, the longest time between two looks.
-    stepping : Stepping
-        Who chooses the steps.
-    moment : Moment, optional
-        At which moment of a step the engine's velocity holds.
-    resolution : Resolution, optional
-        What the engine's numbers tell apart.
+    dt_s : float, ordinary step [s]; where an engine steps by itself, the time between two looks
+    stepping : Stepping, who chooses; steps land on the impacts of what rocks alone
+    moment : Moment, of a step, at which the engine's velocity holds
+    resolution : Resolution, what the engine's numbers tell apart
     """
-    fill(
-        pace,
-        policy=policy_of(stepping, scene),
+    lands = stepping is Stepping.LANDING and not scene.layout.rocking
+    return Pace(
+        policy=EVEN if lands else POLICIES.index(stepping),
         dt=dt_s,
         part=moment.value,
         gravity=scene.system.gravity,
         felt=scene.frame != "world",
+        same=max(SAME_TIME * dt_s, resolution.time_s),
+        motion_end=scene.motion.duration,
+        end=math.inf if scene.duration is None else scene.duration,
     )
-    begin_times(pace.times, scene, dt_s, resolution.time_s)
-    begin_landing(pace.landing, scene, dt_s, moment, resolution)
 
 
-def policy_of(stepping: Stepping, scene: Scene) -> int:
-    """Return which of `POLICIES` chooses: steps land on the impacts of what rocks."""
-    lands = stepping is Stepping.LANDING
-    return EVEN if lands and not scene.layout.rocking else POLICIES.index(stepping)
-
-
-@shared
-def next_step(
-    pace: Pace, ground: Ground, stops: FloatArray, loads: FloatArray, pose: Pose, lifted: bool
-) -> Step:
-    """Return the next step, and advance to its end.
+def advance(pace: Pace, ground: Any, choice: Choice) -> Step:
+    """Return a chosen step, and move on to its end.
 
     Over the step the base has its mean velocity. In the frame "base" the block carries the body
     force -m u_g'' instead, the forcing of EQUATIONS.md, "From (1) and (2)".
@@ -127,17 +132,16 @@ def next_step(
     ----------
     pace : Pace, moved on
     ground : sequence of rows (m + 1, 8), from `ground.rows_of`
-    stops : ndarray (k,), times that a step must not pass [s], of `timetable`
-    loads : ndarray (l, 3), a `Load` a row, of `timetable`
-    pose : Pose, of the block after the last step
-    lifted : bool, whether it is aloft
+    choice : Choice
     """
-    dt, phase, side = chosen(pace, stops, loads, pose, lifted)
+    dt, phase, side = choice
     begin, end = pace.time, pace.time + dt
     # from the moment of the last velocity to that of this one
     kick_s = pace.part * dt + (1.0 - pace.part) * pace.last_dt
     mean = mean_velocity_over(ground, begin, end)
-    velocity = mean if pace.part == MIDDLE else velocity_at(pace, ground, end, dt)
+    velocity = mean
+    if pace.part != MIDDLE:
+        velocity = mean_velocity_over(ground, end, end if pace.part == END else end + dt)
     base_kick, pace.velocity = velocity - pace.velocity, velocity
     pace.place += dt * mean
     pace.time, pace.last_dt = end, dt
@@ -147,24 +151,91 @@ def next_step(
     return Step(dt, end, kick_s, pull_x, pull_z, base_kick, velocity, pace.place, purpose, side)
 
 
-@shared
-def velocity_at(pace: Pace, ground: Ground, end: float, dt: float) -> float:
-    """Return the base velocity [m/s] to which the block's velocity after a step belongs.
+def pass_to(pace: Pace, stops: FloatArray, loads: FloatArray) -> None:
+    """See which stops and loads, (k,) and (l, 3) of `timetable`, lie ahead of the present time."""
+    reached = pace.time + pace.same
+    while stops[pace.stops] <= reached:
+        pace.stops += 1
+    while loads[pace.loads, 1] <= reached:
+        pace.loads += 1
+    begin, end, side = loads[pace.loads, 0], loads[pace.loads, 1], loads[pace.loads, 2]
+    pace.load_s, pace.load_side = end - begin if end < math.inf else math.inf, side
+    over = math.inf
+    if pace.motion_end > reached:
+        over = pace.motion_end
+    elif pace.end > reached:
+        over = pace.end
+    pace.left = stops[pace.stops] - pace.time
+    pace.time_to_uplift = min(begin, over) - pace.time
+    pace.loaded = begin <= reached
+    pace.lifts_next = begin == min(begin, over)
 
-    The step ends at `end` [s] and is `dt` [s] long.
+
+def even(left_s: float, longest: float) -> float:
+    """Return the longest step [s] up to `longest` of which a whole number makes up a time [s]."""
+    if left_s == math.inf:
+        return longest
+    parts = left_s / longest * (1.0 - SAME_TIME)
+    return left_s / (math.ceil(parts) if parts < WHOLE else parts)
+
+
+def timetable(scene: Scene, same: float) -> tuple[FloatArray, FloatArray]:
+    """Return the stops [s] that a step must not pass, and the loads, a `Load` a row.
+
+    A load begins where abs(u_g'') exceeds g tan(alpha) (EQUATIONS.md, "From (1) and (2)"). Times
+    closer than `same` [s] are the same.
     """
-    return mean_velocity_over(ground, end, end if pace.part == END else end + dt)
+    block = scene.system
+    loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha))
+    ends = () if scene.duration is None else (scene.duration,)
+    stops = {*scene.motion.breakpoints, *ends, *(t for load in loads for t in load[:2])}
+    later = [*sorted(stop for stop in stops if stop > same), math.inf]
+    return np.array(later), np.array([*loads, NEVER])
 
 
-@shared
-def chosen(pace: Pace, stops: FloatArray, loads: FloatArray, pose: Pose, lifted: bool) -> Choice:
-    """Choose the next step; one that is all equal says neither what it is for nor the corner.
+def loads_of(motion: Motion, onset: float) -> list[Load]:
+    """Return the times during which abs(u_g'') exceeds `onset` [m/s2], in order."""
+    grid = np.union1d([0.0, motion.duration, *_turns(motion)], motion.breakpoints)
+    above = PULLS[:, None] * motion.acceleration(grid) > onset
+    pulled, change = np.nonzero(above[:, 1:] != above[:, :-1])
+    crossings = _crossings(motion, PULLS[pulled], onset, grid[change], grid[change + 1])
+    loads: list[Load] = []
+    for number, pull in enumerate(PULLS.tolist()):
+        corners = crossings[pulled == number].tolist()
+        if above[number, 0]:
+            corners.insert(0, 0.0)
+        if above[number, -1]:
+            corners.append(motion.duration)
+        loads += [Load(*pair, -pull) for pair in zip(corners[::2], corners[1::2], strict=True)]
+    return sorted(loads)
 
-    What it takes is said at `next_step`.
+
+def _turns(motion: Motion) -> list[float]:
+    """Return the times [s] of the crests and zeros of the sines that make up a motion.
+
+    Between two of them, and on a straight segment, the acceleration is monotonic.
     """
-    if pace.policy == FIXED:
-        return Choice(pace.dt, ContactPhase.SWING, 0.0)
-    pass_to(pace.times, stops, loads, pace.time)
-    if pace.policy == LANDING:
-        return choose(pace.landing, pace.times, pose, lifted)
-    return Choice(even(pace.times.left, pace.dt), ContactPhase.SWING, 0.0)
+    times: list[float] = []
+    for start, end, amplitude, omega, phase, _, _ in motion.segments().tolist():
+        if amplitude != 0.0:
+            first, last = (2.0 * (omega * t + phase) / math.pi for t in (0.0, end - start))
+            quarters = np.arange(math.ceil(first), math.floor(last) + 1)
+            times += (start + (0.5 * math.pi * quarters - phase) / omega).tolist()
+    return times
+
+
+def _crossings(
+    motion: Motion, pull: FloatArray, onset: float, low: FloatArray, high: FloatArray
+) -> FloatArray:
+    """Return the times [s], each between two, at which pull u_g'' passes `onset`: to the digit.
+
+    They are bracketed all at once and in as many parts as cost little more than two do.
+    """
+    above, case = pull * motion.acceleration(low) > onset, np.arange(len(low))
+    parts = np.linspace(0.0, 1.0, max(MOST_AT_ONCE // max(len(low), 1), 2) + 1)[1:-1]
+    while (np.nextafter(low, high) < high).any():
+        inside = low + parts[:, None] * (high - low)
+        early = (pull * motion.acceleration(inside) > onset) == above
+        edges, part = np.vstack((low, inside, high)), np.count_nonzero(early, axis=0)
+        low, high = edges[part, case], edges[part + 1, case]
+    return high

@@ -1,12 +1,16 @@
 """Poses in, events out: the same eyes for every engine.
 
-Nothing here knows how a block rocks. What lies between two steps is interpolated.
+Nothing here knows how a block rocks. A block is aloft while its free corner is higher than the
+contact gives way. What it does between two steps is interpolated; the times and velocities of
+impacts are extrapolated from the steps before and after, for no step need end on one.
 """
 
 import math
-from typing import Annotated, NamedTuple
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
-from engines.parts.compiled import State, fill, shared
+import numpy as np
+
 from engines.scene import Body, Scene
 from engines.world import FloatArray, Moment, Pose, Resolution
 
@@ -38,191 +42,6 @@ class Row(NamedTuple):
     rate_s: float
     theta: float
     rate: float
-
-
-class Swing(State):
-    """The rows during which the block is aloft on one side.
-
-    Attributes
-    ----------
-    side : float
-        -1 or 1; 0 where there is no swing.
-    from_rest : bool
-        Whether it began with an uplift.
-    rows : int
-        Rows until now.
-    first, last : array
-        Rows at both ends, without the shorter steps of an approach at the last.
-    kept : int
-        How many there are in `last`.
-    end, end_theta, dt : float
-        Time [s] and rotation [rad] at the last row of all, and the length [s] of its step.
-    """
-
-    side: float
-    from_rest: bool
-    rows: int
-    first: Annotated[FloatArray, (EDGE, len(Row._fields))]
-    last: Annotated[FloatArray, (EDGE, len(Row._fields))]
-    kept: int
-    end: float
-    end_theta: float
-    dt: float
-
-
-@shared
-def begin_swing(swing: Swing, side: float, from_rest: bool) -> None:
-    """Forget the last swing for another one, or for none.
-
-    Parameters
-    ----------
-    swing : Swing, updated
-    side : float, -1 or 1, or 0 for none
-    from_rest : bool, whether an uplift begins it
-    """
-    swing.side, swing.from_rest = side, from_rest
-    swing.rows = swing.kept = 0
-    swing.dt = 0.0
-
-
-@shared
-def begun(swing: Swing) -> bool:
-    """Return whether the last row is the one that completes what is known of the beginning."""
-    return swing.rows == EDGE
-
-
-@shared
-def resolved(swing: Swing) -> bool:
-    """Return whether enough rows were seen to speak of an impact at the end."""
-    return swing.rows >= RESOLVED_ROWS
-
-
-@shared
-def put(rows: FloatArray, number: int, row: Row) -> None:
-    """Write a row.
-
-    Parameters
-    ----------
-    rows : ndarray (k, 4), columns `TIME` [s], `RATE_S` [s], `THETA` [rad] and `RATE` [rad/s]
-    number : int, of the row that is written
-    row : Row
-    """
-    rows[number, TIME], rows[number, RATE_S] = row.time, row.rate_s
-    rows[number, THETA], rows[number, RATE] = row.theta, row.rate
-
-
-@shared
-def row_of(rows: FloatArray, number: int) -> Row:
-    """Read a row.
-
-    Parameters
-    ----------
-    rows, number
-        As for `put`.
-    """
-    return Row(rows[number, TIME], rows[number, RATE_S], rows[number, THETA], rows[number, RATE])
-
-
-@shared
-def copy(rows: FloatArray, source: int, to: int) -> None:
-    """Write a row again in another place; a slice would compile for much longer.
-
-    Parameters
-    ----------
-    rows : ndarray (k, n), written
-    source, to : int, numbers of the row that is read, and of the one that is written
-    """
-    for column in range(rows.shape[1]):
-        rows[to, column] = rows[source, column]
-
-
-@shared
-def add(swing: Swing, row: Row, dt_s: float) -> None:
-    """Take in the next row.
-
-    Parameters
-    ----------
-    swing : Swing, updated
-    row : Row, at the end of a step
-    dt_s : float, length of the step [s]
-    """
-    if swing.rows < EDGE:
-        put(swing.first, swing.rows, row)
-    swing.rows += 1
-    if dt_s > SHORTENED * swing.dt:
-        if swing.kept == EDGE:
-            swing.kept -= 1
-            for i in range(swing.kept):
-                copy(swing.last, i + 1, i)
-        put(swing.last, swing.kept, row)
-        swing.kept += 1
-    swing.end, swing.end_theta, swing.dt = row.time, row.theta, dt_s
-
-
-@shared
-def landing(swing: Swing) -> tuple[float, float]:
-    """Return the time [s] at which the swing meets theta = 0, and the velocity [rad/s] then."""
-    # in the shorter steps before an impact, and in the one that leads to them, the contact's
-    # force may come later than the other forces
-    count = max(swing.kept - 1, 1)
-    rate = extrapolated(swing.last, 0, count, swing.end)
-    if rate * swing.side >= 0.0:
-        return swing.end, rate
-    time = swing.end - swing.end_theta / rate
-    return time, extrapolated(swing.last, 0, count, time)
-
-
-@shared
-def lift_off(swing: Swing, earliest: float) -> float:
-    """Return the time [s] at which the swing left the rest.
-
-    The base's acceleration passes the onset steadily, so that theta'' grows in proportion to time
-    (EQUATIONS.md, "From (1) and (2)") and so does the square root of the angular velocity.
-
-    Parameters
-    ----------
-    swing : Swing, of which the first rows are used
-    earliest : float, it left no earlier [s]
-    """
-    a, b = row_of(swing.first, 1), row_of(swing.first, 2)
-    root = math.sqrt(max(b.rate / a.rate, 0.0)) if a.rate != 0.0 else 0.0
-    if root <= 1.0:
-        return earliest
-    return max((root * a.rate_s - b.rate_s) / (root - 1.0), earliest)
-
-
-@shared
-def launch(swing: Swing, time: float) -> float:
-    """Return the velocity [rad/s] with which the swing left theta = 0.
-
-    Parameters
-    ----------
-    swing : Swing, of which the first rows are used
-    time : float, when it did [s]
-    """
-    rows = min(swing.rows, EDGE)
-    # the step to the first row may contain the impact
-    return extrapolated(swing.first, min(1, rows - 1), rows, time)
-
-
-@shared
-def extrapolated(rows: FloatArray, first: int, stop: int, time: float) -> float:
-    """Return the angular velocity [rad/s] at a time by the polynomial through some rows.
-
-    Parameters
-    ----------
-    rows : ndarray (k, 4), a `Row` each
-    first, stop : int, numbers of the first row and of the one after the last
-    time : float, [s]
-    """
-    total = 0.0
-    for i in range(first, stop):
-        weight = 1.0
-        for j in range(first, stop):
-            if j != i:
-                weight *= (time - rows[j, RATE_S]) / (rows[i, RATE_S] - rows[j, RATE_S])
-        total += weight * rows[i, RATE]
-    return total
 
 
 LIFT_WIDTHS = 1e-8
@@ -287,7 +106,8 @@ EVENTS_A_LOOK = 3
 """Events that a look adds at most: the impact before, an uplift, and the impact between."""
 
 
-class Watch(State):
+@dataclass(slots=True)
+class Watch:
     """What was seen of a block until now.
 
     Attributes
@@ -306,48 +126,41 @@ class Watch(State):
         rotation [rad] from which a fall is seen as one.
     motion_end, end : float
         End of the motion, and of the observation [s].
-    slides, lands : bool
-        Whether the block is meant to slide, and whether steps land on impacts of a pivot that has
-        to hold.
-    keeps_rows : bool
-        Whether a history is wanted.
-    rows, events : int
-        How many there are.
-    lifted : bool
-        Whether the block is aloft at the last row.
-    resting, rocked, crossed, overturned, turned : bool
-        Whether it is at rest, has left it at some time, has exceeded alpha, has overturned, and has
-        turned back after the motion.
+    slides, lands, keeps_rows : bool
+        Whether the block is meant to slide; whether steps land on impacts of a pivot that has to
+        hold; whether a history is wanted.
+    resting, rocked, lifted, crossed, overturned, turned, done : bool
+        Whether it is at rest, has left it at some time, is aloft at the last row, has exceeded
+        alpha, has overturned, has turned back after the motion; whether the response is decided.
     peak : float
         Largest rotation [rad].
-    slide, sink, sunk, highest : float
-        Of the pivot [m]; sunk is how deep it was before the block lay.
-    beam_slide : float
-        How far the beam of a frame slid along the columns' tops [m].
+    low_since, last_rest, turned_at : float
+        Since when it has not been aloft (nan while it is), when it last came to rest, and when it
+        last turned faster than a block at rest may [s].
+    rows, events, uplift : int
+        How many there are, and which event is the last uplift.
+    slide, sink, sunk, highest, beam_slide : float
+        Of the pivot [m]; sunk is how deep it was before the block lay; and how far the beam of a
+        frame slid along the columns' tops.
     give, hop : float
         How deep the block at rest was in its base, and how high its last swing's pivot hopped [m].
-    low_since : float
-        Since when it has not been aloft [s]; nan while it is.
-    last_rest, turned_at : float
-        When it last came to rest, and when it last turned faster than a block at rest may [s].
     lean_side, lean_peak, lean_since : float
         Of the block at rest: to which side it leans, how far it did [rad], and since when [s].
     hovers, loose, props : bool
         Whether a skin of the contact holds it above its base, whether it was seen to rock although
         no corner's height shows it, and whether its contact holds it leaning.
-    uplift : int
-        Which event is the last uplift.
-    landed : bool
-        Whether a swing ended and the next has not begun, its end at landed_s [s] with the
-        velocity landed_rate [rad/s].
-    swing : Swing
-        The present swing.
-    two : array
-        The last two rows.
-    done : bool
-        Whether the response is decided.
-    problem : int
-        Why it is no longer that of a rocking block, and by how much [m]: far.
+    landed, landed_s, landed_rate : bool, float, float
+        Whether a swing ended and the next has not begun: when [s], and how fast [rad/s].
+    side, from_rest, count, kept : float, bool, int, int
+        Of the swing: its side, 0 where there is none; whether an uplift began it; its rows until
+        now, and how many of them are in `last`.
+    first, last, two : array
+        Rows at both ends of the swing, without the shorter steps of an approach at the last; and
+        the last two rows of all.
+    swing_end, swing_theta, swing_dt : float
+        Time [s] and rotation [rad] at the swing's last row of all, and the length [s] of its step.
+    problem, far : int, float
+        Why it is no longer that of a rocking block, and by how much [m].
     """
 
     ahead: float
@@ -365,77 +178,70 @@ class Watch(State):
     slides: bool
     lands: bool
     keeps_rows: bool
-    rows: int
-    events: int
-    lifted: bool
     resting: bool
     rocked: bool
+    lifted: bool
     crossed: bool
-    overturned: bool
-    turned: bool
     peak: float
-    slide: float
-    sink: float
-    sunk: float
-    highest: float
-    beam_slide: float
-    give: float
-    hop: float
     low_since: float
-    last_rest: float
-    turned_at: float
-    lean_side: float
-    lean_peak: float
-    lean_since: float
-    hovers: bool
-    loose: bool
-    props: bool
-    uplift: int
-    landed: bool
-    landed_s: float
-    landed_rate: float
-    swing: Swing
-    two: Annotated[FloatArray, (2, len(Row._fields))]
-    done: bool
-    problem: int
-    far: float
+    side: float
+    last_rest: float = 0.0
+    turned_at: float = -math.inf
+    overturned: bool = False
+    turned: bool = False
+    done: bool = False
+    rows: int = 0
+    events: int = 0
+    uplift: int = 0
+    slide: float = 0.0
+    sink: float = 0.0
+    sunk: float = 0.0
+    highest: float = 0.0
+    beam_slide: float = 0.0
+    give: float = 0.0
+    hop: float = 0.0
+    lean_side: float = 0.0
+    lean_peak: float = 0.0
+    lean_since: float = 0.0
+    hovers: bool = False
+    loose: bool = False
+    props: bool = False
+    landed: bool = False
+    landed_s: float = 0.0
+    landed_rate: float = 0.0
+    from_rest: bool = False
+    count: int = 0
+    kept: int = 0
+    first: FloatArray = field(default_factory=lambda: np.zeros((EDGE, 4)))
+    last: FloatArray = field(default_factory=lambda: np.zeros((EDGE, 4)))
+    two: FloatArray = field(default_factory=lambda: np.zeros((2, 4)))
+    swing_end: float = 0.0
+    swing_theta: float = 0.0
+    swing_dt: float = 0.0
+    problem: int = NO_PROBLEM
+    far: float = 0.0
 
 
 def begin_watch(
-    watch: Watch,
-    scene: Scene,
-    body: Body,
-    dt_s: float,
-    lands: bool,
-    moment: Moment,
-    resolution: Resolution,
-) -> None:
-    """Begin at rest, or in a swing that no uplift began.
+    scene: Scene, body: Body, dt_s: float, lands: bool, moment: Moment, resolution: Resolution
+) -> Watch:
+    """Return what a body that rocks begins with: at rest, or in a swing that no uplift began.
 
     Parameters
     ----------
-    watch : Watch
-        What is filled.
     scene : Scene
-        What is being simulated.
-    body : Body
-        Which of its bodies is watched: one that rocks.
-    dt_s : float
-        Ordinary step [s], which bounds what can be resolved.
-    lands : bool
-        Whether the steps land on impacts of a pivot that has to hold.
-    moment : Moment
-        At which moment of a step the engine's velocity holds.
-    resolution : Resolution
-        What the engine's numbers tell apart.
+    body : Body, which of its bodies is watched
+    dt_s : float, ordinary step [s], which bounds what can be resolved
+    lands : bool, whether the steps land on impacts of a pivot that has to hold
+    moment : Moment, of a step, at which the engine's velocity holds
+    resolution : Resolution, what the engine's numbers tell apart
     """
     block, (theta, rate) = scene.system, scene.start
     lift = max(LIFT_WIDTHS * block.width, resolution.length_m)
     lift += LIFT_FALL * block.gravity * dt_s**2
     aloft, peak = bool(scene.side), abs(theta)
     weight = block.p**2 * math.sin(block.alpha)
-    fill(
-        watch,
+    watch = Watch(
         ahead=1.0 - moment.value,
         home=body.home[0],
         half_width=0.5 * block.width,
@@ -453,17 +259,16 @@ def begin_watch(
         keeps_rows=scene.times is not None,
         resting=not aloft,
         rocked=aloft,
-        low_since=math.nan if aloft else 0.0,
-        turned_at=-math.inf,
-        peak=peak,
-        crossed=peak > block.alpha,
         lifted=block.width * math.sin(peak) > lift,
+        crossed=peak > block.alpha,
+        peak=peak,
+        low_since=math.nan if aloft else 0.0,
+        side=scene.side,
     )
-    watch.swing.side = scene.side
-    watch.two[1] = Row(0.0, 0.0, theta, rate)
+    watch.two[1] = 0.0, 0.0, theta, rate
+    return watch
 
 
-@shared
 def see(
     watch: Watch, rows: FloatArray, events: FloatArray, time: float, dt_s: float, pose: Pose
 ) -> None:
@@ -472,8 +277,8 @@ def see(
     Parameters
     ----------
     watch : Watch, updated
-    rows : ndarray (k, 4), where a history is kept, columns as in `swing`
-    events : ndarray (k, 4), where events are written, columns as in `watch`
+    rows : ndarray (k, 4), where a history is kept, a `Row` each
+    events : ndarray (k, 4), where events are written
     time, dt_s : float, end and length of the step [s]
     pose : Pose
     """
@@ -500,7 +305,7 @@ def see(
     watch.props = watch.lifted and props(watch, row)
     if watch.props:
         watch.lifted = False
-        begin_swing(watch.swing, 0.0, False)
+        begin_swing(watch, 0.0, False)
     if watch.lifted:
         watch.hop = max(watch.hop, level - reach)
     if abs(theta) <= watch.alpha:
@@ -523,18 +328,16 @@ def see(
     decide(watch, row)
 
 
-@shared
 def props(watch: Watch, row: Row) -> bool:
     """Say whether the contact holds a block that leans, and no longer rocks, where it is."""
-    swing, since = watch.swing, max(watch.turned_at, watch.motion_end)
-    if swing.side != 0.0 and not watch.props:
-        since = max(since, swing.first[0, TIME]) if swing.side * row.theta > 0.0 else math.inf
+    since = max(watch.turned_at, watch.motion_end)
+    if watch.side != 0.0 and not watch.props:
+        since = max(since, watch.first[0, TIME]) if watch.side * row.theta > 0.0 else math.inf
     elif not watch.props:
         return False
     return row.time - since >= watch.rest_time and abs(row.theta) < PROPPED_PART * watch.alpha
 
 
-@shared
 def lean(watch: Watch, row: Row) -> None:
     """See whether a block at rest turns and falls back, however deep in its base or high above."""
     size, side = abs(row.theta), math.copysign(1.0, row.theta)
@@ -546,7 +349,6 @@ def lean(watch: Watch, row: Row) -> None:
     watch.loose = watch.loose or falls or (watch.hovers and abs(row.rate) > watch.rest_rate)
 
 
-@shared
 def check(watch: Watch, low: float, centre: float) -> None:
     """Look at the heights [m] of the lowest corner and the centre, and at the slide."""
     width = 2.0 * watch.half_width
@@ -565,28 +367,26 @@ def check(watch: Watch, low: float, centre: float) -> None:
         watch.problem, watch.far = SLID, watch.slide
 
 
-@shared
 def aloft(watch: Watch, events: FloatArray, row: Row, dt_s: float) -> None:
     """Take in a row at which the block is aloft."""
-    swing, side = watch.swing, math.copysign(1.0, row.theta)
-    if swing.side != side:
+    side = math.copysign(1.0, row.theta)
+    if watch.side != side:
         land(watch, events)
-        begin_swing(swing, side, watch.resting and not watch.loose)
+        begin_swing(watch, side, watch.resting and not watch.loose)
         watch.hop = 0.0
         if watch.resting:
             watch.uplift = watch.events
             since = watch.lean_since if watch.loose else watch.two[1, TIME]
             note(watch, events, UPLIFT, since, 0.0, 0.0)
             watch.resting, watch.rocked = False, True
-    add(swing, row, dt_s)
-    if begun(swing):
+    add(watch, row, dt_s)
+    if watch.count == EDGE:  # all is known of the swing's beginning
         complete(watch, events)
-        if swing.from_rest:
-            events[watch.uplift, WHEN] = lift_off(swing, watch.last_rest)
+        if watch.from_rest:
+            events[watch.uplift, WHEN] = lift_off(watch)
     watch.low_since = math.nan
 
 
-@shared
 def low(watch: Watch, events: FloatArray, row: Row) -> None:
     """Take in a row at which the block is not aloft."""
     land(watch, events)
@@ -600,35 +400,28 @@ def low(watch: Watch, events: FloatArray, row: Row) -> None:
         complete(watch, events)
 
 
-@shared
 def land(watch: Watch, events: FloatArray) -> None:
     """End the present swing, if there is one, with an impact."""
-    swing = watch.swing
-    if swing.side != 0.0:
+    if watch.side != 0.0:
         complete(watch, events)
-        if resolved(swing):
+        if watch.count >= RESOLVED_ROWS:
             watch.landed = True
-            watch.landed_s, watch.landed_rate = landing(swing)
-        begin_swing(swing, 0.0, False)
+            watch.landed_s, watch.landed_rate = landing(watch)
+        begin_swing(watch, 0.0, False)
 
 
-@shared
 def complete(watch: Watch, events: FloatArray) -> None:
-    """Complete the last impact with the velocity after it, zero if no swing followed.
-
-    Parameters
-    ----------
-    watch : Watch, updated
-    events : ndarray (k, 4), columns as in `watch`
-    """
+    """Complete the last impact with the velocity after it, zero if no swing followed."""
     if watch.landed:
-        time, swing = watch.landed_s, watch.swing
-        after = launch(swing, time) if swing.side != 0.0 else 0.0
-        note(watch, events, IMPACT, time, watch.landed_rate, after)
+        after = 0.0
+        if watch.side != 0.0:
+            rows = min(watch.count, EDGE)
+            # the step to the first row may contain the impact
+            after = extrapolated(watch.first, min(1, rows - 1), rows, watch.landed_s)
+        note(watch, events, IMPACT, watch.landed_s, watch.landed_rate, after)
         watch.landed = False
 
 
-@shared
 def note(
     watch: Watch, events: FloatArray, kind: float, time: float, before: float, after: float
 ) -> None:
@@ -639,7 +432,6 @@ def note(
     watch.events += 1
 
 
-@shared
 def turning(watch: Watch) -> None:
     """Note the largest rotation near the last row but one."""
     b, c = row_of(watch.two, 0), row_of(watch.two, 1)
@@ -655,7 +447,6 @@ def turning(watch: Watch) -> None:
         watch.crossed = peak > watch.alpha
 
 
-@shared
 def decide(watch: Watch, row: Row) -> None:
     """Say whether the response is decided.
 
@@ -669,3 +460,79 @@ def decide(watch: Watch, row: Row) -> None:
     watch.overturned = lies or (over and size > watch.alpha and outward)
     settled = over and watch.end == math.inf and (watch.turned or (watch.resting and still))
     watch.done = watch.overturned or settled or row.time >= watch.end
+
+
+def begin_swing(watch: Watch, side: float, from_rest: bool) -> None:
+    """Forget the last swing for another one at a side, or for none, 0."""
+    watch.side, watch.from_rest = side, from_rest
+    watch.count = watch.kept = 0
+    watch.swing_dt = 0.0
+
+
+def add(watch: Watch, row: Row, dt_s: float) -> None:
+    """Take in the next row of a swing, at the end of a step [s]."""
+    if watch.count < EDGE:
+        put(watch.first, watch.count, row)
+    watch.count += 1
+    if dt_s > SHORTENED * watch.swing_dt:
+        if watch.kept == EDGE:
+            watch.kept -= 1
+            for i in range(watch.kept):
+                copy(watch.last, i + 1, i)
+        put(watch.last, watch.kept, row)
+        watch.kept += 1
+    watch.swing_end, watch.swing_theta, watch.swing_dt = row.time, row.theta, dt_s
+
+
+def landing(watch: Watch) -> tuple[float, float]:
+    """Return the time [s] at which the swing meets theta = 0, and the velocity [rad/s] then."""
+    # in the shorter steps before an impact, and in the one that leads to them, the contact's
+    # force may come later than the other forces
+    count = max(watch.kept - 1, 1)
+    rate = extrapolated(watch.last, 0, count, watch.swing_end)
+    if rate * watch.side >= 0.0:
+        return watch.swing_end, rate
+    time = watch.swing_end - watch.swing_theta / rate
+    return time, extrapolated(watch.last, 0, count, time)
+
+
+def lift_off(watch: Watch) -> float:
+    """Return the time [s] at which the swing left the rest, no earlier than that began.
+
+    The base's acceleration passes the onset steadily, so that theta'' grows in proportion to time
+    (EQUATIONS.md, "From (1) and (2)") and so does the square root of the angular velocity.
+    """
+    a, b = row_of(watch.first, 1), row_of(watch.first, 2)
+    root = math.sqrt(max(b.rate / a.rate, 0.0)) if a.rate != 0.0 else 0.0
+    if root <= 1.0:
+        return watch.last_rest
+    return max((root * a.rate_s - b.rate_s) / (root - 1.0), watch.last_rest)
+
+
+def put(rows: FloatArray, number: int, row: Row) -> None:
+    """Write a row."""
+    rows[number, TIME], rows[number, RATE_S] = row.time, row.rate_s
+    rows[number, THETA], rows[number, RATE] = row.theta, row.rate
+
+
+def row_of(rows: FloatArray, number: int) -> Row:
+    """Read a row."""
+    return Row(rows[number, TIME], rows[number, RATE_S], rows[number, THETA], rows[number, RATE])
+
+
+def copy(rows: FloatArray, source: int, to: int) -> None:
+    """Write a row again in another place; a slice would compile for much longer."""
+    for column in range(rows.shape[1]):
+        rows[to, column] = rows[source, column]
+
+
+def extrapolated(rows: FloatArray, first: int, stop: int, time: float) -> float:
+    """Return the velocity [rad/s] at a time [s] by the polynomial through some rows."""
+    total = 0.0
+    for i in range(first, stop):
+        weight = 1.0
+        for j in range(first, stop):
+            if j != i:
+                weight *= (time - rows[j, RATE_S]) / (rows[i, RATE_S] - rows[j, RATE_S])
+        total += weight * rows[i, RATE]
+    return total

@@ -17,8 +17,8 @@ from analytic.kernels.compiled import compile_all
 from analytic.kernels.forms import Kernel, are_compiled
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason, Response
-from engines.parts.compiled import PACKAGE
-from engines.run.look import compile_monitor
+from engines.run.look import PACKAGE, compile_look
+from engines.run.look import compile_all as compile_looks
 from studies.cases.refusal import BadInputError
 from studies.kit.app import ENDING
 from studies.kit.identity import Maker, maker_of
@@ -75,13 +75,19 @@ def local(
         yield number, row
 
 
+def _compile_all() -> None:
+    """Interpret nothing more in this process: there are many cases to come."""
+    compile_all()
+    compile_looks()
+
+
 _loaded = set[str]()
 """Sources whose kernels this process has loaded."""
 
 
 def _load(job: Job) -> None:
     """Load what is compiled of a job's source: that is no part of the first case's run time."""
-    compile_all()
+    _compile_all()
     if job.asked.kind != "engine" and job.source not in _loaded:
         _loaded.add(job.source)
         ask(_short(job))
@@ -124,13 +130,13 @@ def _compile_for(jobs: Sequence[Job]) -> None:
     if Kernel.tell is not None and not are_compiled(PACKAGE):
         Kernel.tell("compiling what engines need, once: some 10 to 40 s")
     ahead = [_short(job) for job in first.values() if job.asked.declared.compiles]
-    tasks = [(compile_monitor,), *((ask, job) for job in ahead)]
+    tasks = [(compile_look,), *((ask, job) for job in ahead)]
     with suppress(Exception):  # the cases will say what is wrong
         list(answers(_call, tasks, 1, 1800.0))  # [s]; nothing takes longer to compile
 
 
 def _call(call: Callable[..., Any], *given: Any) -> None:
-    compile_all()  # a short job would be interpreted, and the first long one compile in its time
+    _compile_all()  # a short job would be interpreted, and the first long one compile in its time
     call(*given)
 
 

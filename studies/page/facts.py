@@ -11,13 +11,7 @@ from typing import Any, TypeAlias
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import (
-    BEST,
-    DEFAULT,
-    LEFT_OUT,
-    Help,
-    Stepping,
-)
+from engines.declaration import BEST, DEFAULT, LEFT_OUT, Help, Stepping
 from engines.registry import OWN
 from studies.kit.identity import NOT_INSTALLED
 from studies.kit.say import capital, duration, listed, part

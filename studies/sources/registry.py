@@ -15,7 +15,6 @@ from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
-from engines.parts.compiled import interpreted_first
 from engines.registry import announce as announce_engine
 from engines.registry import find, named
 from engines.scene import Scene, System
@@ -102,7 +101,7 @@ def run_engine(
     from engines.run.run import run
 
     scene = scene_of(block, motion, preset, **options)
-    return interpreted_first(partial(run, find(engine).use(scene)))
+    return run(find(engine).use(scene))
 
 
 def scene_of(

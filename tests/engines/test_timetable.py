@@ -7,7 +7,7 @@ import pytest
 
 from analytic import Record, SinePulse
 from engines.run.ground import mean_velocity_of
-from engines.run.timetable import loads_of
+from engines.run.steps import loads_of
 
 WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])
 
