@@ -25,10 +25,10 @@ from engines.mujoco.contact import (
     read,
 )
 from engines.parts import corner_spheres, floor_half_size, half_size, hull_points
-from engines.parts.compiled import fill, interpreted, switched_off
+from engines.run.look import compiled, records
 from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
-from engines.world import Driver, FloatArray, Moment, Pose, Script, Step
+from engines.world import FloatArray, Moment, Pose, Script, Step
 
 LIBRARY_STEP_S = 0.002
 """The library's own time step [s]."""
@@ -302,21 +302,21 @@ class MujocoWorld:
         self._fault = self._read_back(dt_s)
         if not all(body.at.at_rest for body in scene.bodies):
             self._data.qpos[:], self._data.qvel[:] = coordinates(scene, s)
-        loops = scene.compiled and looping()
-        holds = ContactState.blank() if loops else [ContactState.plain()]
-        self.held = holds[0]
-        begin_contact(self.held, scene, s, dt_s, self.model.npair)
+        self.held = begin_contact(scene, s, dt_s, self.model.npair)
         self.arrays = self._arrays_of()
-        self.drive: Driver | None = None
-        if loops:
-            from engines.mujoco.loop import drive, memory_of
+        self.drive: Any = None
+        if scene.compiled:
+            from engines.mujoco.loop import drive, memory_of, usable
 
-            self.drive = partial(drive, holds, self.arrays, memory_of(self.model, self._data))
+            if usable():
+                memory, holds = memory_of(self.model, self._data), records([self.held])
+                self.held = holds[0]
+                self.drive = partial(compiled(drive), holds, self.arrays, memory)
         # the library would write its warnings to a file; they are counted and read from `fault`
         self._mj.set_mju_user_warning(lambda message: None)
 
     def step(self, step: Step) -> None:
-        """Advance by a step; see `engines.world.SteppedWorld`."""
+        """Advance by a step."""
         data, held, arrays = self._data, self.held, self.arrays
         prepare(held, arrays, step)
         self.model.opt.timestep = step.dt_s
@@ -405,16 +405,13 @@ class MujocoWorld:
         )
 
 
-def begin_contact(
-    held: ContactState, scene: Scene, s: MujocoSettings, dt_s: float, pairs: int
-) -> None:
-    """Fill what holds the bodies of a scene, of which so many pairs touch, in ordinary steps."""
+def begin_contact(scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> ContactState:
+    """Return what holds the bodies of a scene, of which so many pairs touch, in ordinary steps."""
     block, touching = scene.system, len(scene.layout.contacts)
     impedance = 1.0 if s.impedance is None else s.impedance[1]
     sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
     time_constant, ratio = s.solref or (0.0, 0.0)
-    fill(
-        held,
+    return ContactState(
         planar=s.planar,
         moving=scene.frame == "world",
         base_velocity=s.floor == "surfacevel",

@@ -22,9 +22,9 @@ a row of arrays.pairs.
 """
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
-from engines.parts.compiled import State, shared
 from engines.scene import LOWER
 from engines.world import ContactPhase, FloatArray, Step
 
@@ -63,7 +63,8 @@ rest.
 """
 
 
-class ContactState(State):
+@dataclass(slots=True)
+class ContactState:
     """What holds a block, and what was seen of it.
 
     Attributes
@@ -95,45 +96,45 @@ class ContactState(State):
         the length of that step [s].
     """
 
-    planar: bool
-    moving: bool
-    base_velocity: bool
-    welded: bool
-    single: bool
-    stacked: bool
-    by_phase: bool
-    reflects: bool
-    preload: bool
-    width: float
-    height: float
-    form: int
-    time_constant: float
-    ratio: float
-    damping: float
-    sliding_damping: float
-    stiffness: float
-    impedance: float
-    carry: float
-    touching: int
-    pairs: int
-    corners: int
-    ordinary_squared: float
-    impedance_squared: float
-    growth: float
-    steady: float
-    dt: float
-    time: float
-    sliding: float
-    moved: float
-    raised: float
-    velocity: float
-    lag: float
-    aloft: bool
-    released: bool
-    rate: float
-    gained: float
-    returned: float
-    last_dt: float
+    planar: bool = False
+    moving: bool = False
+    base_velocity: bool = False
+    welded: bool = False
+    single: bool = False
+    stacked: bool = False
+    by_phase: bool = False
+    reflects: bool = False
+    preload: bool = False
+    width: float = 0.0
+    height: float = 0.0
+    form: int = 0
+    time_constant: float = 0.0
+    ratio: float = 0.0
+    damping: float = 0.0
+    sliding_damping: float = 0.0
+    stiffness: float = 0.0
+    impedance: float = 0.0
+    carry: float = 0.0
+    touching: int = 0
+    pairs: int = 0
+    corners: int = 0
+    ordinary_squared: float = 0.0
+    impedance_squared: float = 0.0
+    growth: float = 0.0
+    steady: float = 0.0
+    dt: float = 0.0
+    time: float = 0.0
+    sliding: float = 0.0
+    moved: float = 0.0
+    raised: float = 0.0
+    velocity: float = 0.0
+    lag: float = 0.0
+    aloft: bool = False
+    released: bool = False
+    rate: float = 0.0
+    gained: float = 0.0
+    returned: float = 0.0
+    last_dt: float = 0.0
 
 
 class Arrays(NamedTuple):
@@ -186,7 +187,6 @@ class Forces(NamedTuple):
     force: FloatArray
 
 
-@shared
 def read(held: ContactState, arrays: Arrays) -> None:
     """Read the state: write every body's `Pose` into a row of it."""
     q, v, state = arrays.position, arrays.velocity, arrays.state
@@ -203,7 +203,6 @@ def read(held: ContactState, arrays: Arrays) -> None:
         state[body, 2], state[body, 3] = theta, rate
 
 
-@shared
 def prepare(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Set what a step needs, but for its length; `read` comes before.
 
@@ -224,7 +223,6 @@ def prepare(held: ContactState, arrays: Arrays, step: Step) -> None:
         arrays.base_place[0, 0] = step.base_x if held.welded else held.moved
 
 
-@shared
 def set_reference(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Set the contact in units of the step."""
     dt = step.dt_s
@@ -246,7 +244,6 @@ def set_reference(held: ContactState, arrays: Arrays, step: Step) -> None:
         set_reach(held, arrays, step)
 
 
-@shared
 def direct(impedance: float, dt_s: float, stiffness: float, damping: float) -> tuple[float, float]:
     """Return solref of k dt^2 and b dt: minus a stiffness [1/s2] and minus a damping [1/s].
 
@@ -257,14 +254,12 @@ def direct(impedance: float, dt_s: float, stiffness: float, damping: float) -> t
     return -stiffness * (unit * unit), -unit * damping
 
 
-@shared
 def put_pair(table: FloatArray, first: float, second: float) -> None:
     """Write two numbers into every row of a table (k, 2)."""
     for row in range(len(table)):
         table[row, 0], table[row, 1] = first, second
 
 
-@shared
 def part_of(held: ContactState, step: Step) -> float:
     """Return the part to give back of the velocity with which the pivot comes into a step."""
     was_aloft = held.aloft
@@ -274,7 +269,6 @@ def part_of(held: ContactState, step: Step) -> float:
     return held.returned
 
 
-@shared
 def part_returned(held: ContactState, step: Step) -> float:
     """Return that part in a swing, after another step of one."""
     if held.rate == 0.0:
@@ -289,7 +283,6 @@ def part_returned(held: ContactState, step: Step) -> float:
     return min(part if held.returned != 0.0 else 0.5 * part, MOST_REFLECTION)
 
 
-@shared
 def set_reach(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Set from which gap [m] on each contact acts, and preload the one that carries the block."""
     margin, pairs = arrays.pair_margin, arrays.pairs
@@ -312,7 +305,6 @@ def set_reach(held: ContactState, arrays: Arrays, step: Step) -> None:
             margin[i] = held.carry if step.phase == ContactPhase.STRIKE else -held.carry
 
 
-@shared
 def hold_pivot(held: ContactState, arrays: Arrays, step: Step, pair: int) -> None:
     """Keep a pivot in contact, and press it."""
     arrays.pair_margin[pair] = held.carry
@@ -321,7 +313,6 @@ def hold_pivot(held: ContactState, arrays: Arrays, step: Step, pair: int) -> Non
         arrays.pair_reference[pair, 0] = -preload * held.impedance_squared / held.carry
 
 
-@shared
 def hold_at_rest(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Hold each corner from the gap [m] on to which what it carries presses it to the base.
 
@@ -336,7 +327,6 @@ def hold_at_rest(held: ContactState, arrays: Arrays, step: Step) -> None:
         arrays.pair_margin[i] = pressed + LEAST_HELD * all_of_it
 
 
-@shared
 def gap_of(held: ContactState, arrays: Arrays, pair: int) -> float:
     """Return the gap [m] between a corner and what it touches, both about upright."""
     row, state = arrays.pairs[pair], arrays.state
@@ -350,7 +340,6 @@ def gap_of(held: ContactState, arrays: Arrays, pair: int) -> float:
     return under - (z + held.height * math.cos(theta) + row[SIDE] * raised)
 
 
-@shared
 def notice(held: ContactState, arrays: Arrays, forces: Forces, step: Step) -> None:
     """Note what a step has done, for the next one.
 
@@ -372,7 +361,6 @@ def notice(held: ContactState, arrays: Arrays, forces: Forces, step: Step) -> No
         held.rate, held.last_dt = rate, step.dt_s
 
 
-@shared
 def look_at_yield(held: ContactState, arrays: Arrays, forces: Forces, step: Step) -> None:
     """Note by how much [m/s2] the corners yield to their forces.
 

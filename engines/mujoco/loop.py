@@ -17,8 +17,7 @@ from numba import types
 from numpy.typing import NDArray
 
 from engines.mujoco.contact import Arrays, ContactState, Forces, notice, prepare, read
-from engines.parts.compiled import kernel, shared
-from engines.run.look import Lists, Run, onward, undecided
+from engines.run.look import Lists, Run, next_step, undecided
 from engines.world import FloatArray
 
 mj_step: Any = types.ExternalFunction("mj_step", types.void(types.intp, types.intp))
@@ -53,7 +52,6 @@ class Memory(NamedTuple):
     arena: FloatArray
 
 
-@kernel
 def drive(
     holds: Sequence[ContactState],
     arrays: Arrays,
@@ -69,7 +67,7 @@ def drive(
     held = holds[0]
     read(held, arrays)
     for taken in range(most):
-        step = onward(runs, lists, arrays.state)
+        step = next_step(runs, lists, arrays.state)
         prepare(held, arrays, step)
         memory.timestep[0] = step.dt_s
         mj_step(memory.model, memory.data)
@@ -80,7 +78,6 @@ def drive(
     return most
 
 
-@shared
 def forces_in(memory: Memory) -> Forces:
     """Return what the solver says of the last step."""
     rows = memory.rows[0]
