@@ -254,7 +254,7 @@ class DartWorld:
             shape.getDynamicsAspect().setRestitutionCoeff(coefficient)
 
     def step(self, step: Step) -> None:
-        """Advance by a step; see `engines.world.SteppedWorld`."""
+        """Advance by a step."""
         world, unit = self.world, self._unit
         if step.dt_s != self._dt:
             world.setTimeStep(step.dt_s)

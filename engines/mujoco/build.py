@@ -444,15 +444,6 @@ def begin_contact(scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> C
     )
 
 
-def looping() -> bool:
-    """Return whether a compiled loop can take the steps, and compiled code is used at all."""
-    if interpreted() or switched_off():
-        return False
-    from engines.mujoco.loop import usable
-
-    return usable()
-
-
 MODEL = "block.xml"
 """File of a script's model, beside it."""
 
