@@ -1,4 +1,4 @@
-"""Facets that figures share: panels in rows, dots in rows, cells, scales of errors, keys."""
+"""Facets that figures share: panels in rows, dots in rows, scales of errors, keys."""
 
 from __future__ import annotations
 
@@ -6,15 +6,12 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.typing import ColorType
-from numpy.typing import ArrayLike
 
 from studies.kit.say import power
 from studies.measures.presets import in_order, look_of
@@ -84,19 +81,6 @@ def strip_beyond(axes: Axes, start: float, words: str, *, along: str = "y") -> N
         x, y, ha, va = (middle, 1.0, "center", "bottom")
     axes.text(x, y, words, transform=getattr(axes, f"get_{along}axis_transform")(), ha=ha, va=va,
               fontsize=8, color="#666666")  # fmt: skip
-
-
-def cells(axes: Axes, values: ArrayLike, least: float) -> Any:
-    """Paint a matrix of errors, the first row above; return the image, for a colour bar.
-
-    The colours end at `least` and 1, in order of lightness for every reader; what has no error
-    stays white.
-    """
-    image = axes.imshow(np.ma.masked_invalid(values), aspect="auto", cmap="cividis_r",
-                        interpolation="nearest", norm=LogNorm(least, 1.0, clip=True))  # fmt: skip
-    axes.tick_params(length=0)
-    axes.spines[:].set_visible(False)
-    return image
 
 
 def dot(name: str, marker: str, color: ColorType = "#555555", **look: Any) -> Line2D:

@@ -27,15 +27,7 @@ from studies.measures.finer import cheapest_below, joint
 from studies.measures.presets import engine_of
 from studies.measures.published import TARGETS
 from studies.precision.methods import PLAIN, known_methods, methods_of
-from studies.precision.scene import (
-    CASE,
-    has,
-    omissions,
-    put_back,
-    reference,
-    references,
-    share,
-)
+from studies.precision.scene import CASE, has, omissions, put_back, reference, references, share
 from studies.sources.registry import core_sources
 
 if TYPE_CHECKING:

@@ -11,11 +11,7 @@ from studies.measures.costs import EXACT
 from studies.measures.presets import uses_of
 
 TOLERANCES = tuple(10.0**-n for n in range(2, 13))
-
-
 TIGHT = {"event_tolerance": 1e-13}
-
-
 STEPS = (0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)
 
 

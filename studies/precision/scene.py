@@ -25,8 +25,6 @@ from studies.measures.differences import posed_cases
 
 GRID = np.linspace(0.0, 1.0, 1001)
 """Of a recorded history, over its duration."""
-
-
 CASE = HISTORIES[5][1]
 """Figure 5-b, of which scenes are timed: one impact before the peak, κ about 5."""
 
