@@ -16,13 +16,13 @@ from analytic import conditioning
 from analytic.frame import RockingFrame
 from analytic.response import Outcome
 from engines import ENGINES, core_engines
-from engines.declaration import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS, Stepping
+from engines.declaration import BEST, BY_DEFAULT, DEFAULT, OWN_STEPS, Stepping
 from engines.scene import Scene
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.paper import Case, free_rocking_window
 from studies.cases.refusal import BadInputError
 from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
-from studies.cases.variants import Variant, preset_values, variants
+from studies.cases.variants import Variant, variants
 from studies.kit.arguments import Engines, one_of
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import out_of, part
@@ -208,27 +208,6 @@ def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def recommendation(lines: pd.DataFrame, engine: str) -> pd.DataFrame:
-    """Return a line for each tuned setting of an engine, the one that matters most first.
-
-    What it moves and what errors it leaves where the tuned preset has it at the library's default;
-    and, in columns that end in alone, where it is all that is tuned of the defaults. What breaks a
-    case matters most, then what moves a peak or an impact.
-    """
-    lines = lines[lines["engine"] == engine].set_index("factor")
-    left = lines[(lines["preset"] == BEST) & (lines["level"] == BY_DEFAULT)]
-    alone = lines[(lines["preset"] == DEFAULT) & (lines["level"] == AS_BEST)]
-    both = alone.merge(left, "left", on="factor", suffixes=("_alone", ""))
-    breaks = both[["worse", "worse_alone"]].eq(True).any(axis=1)
-    matter = both.filter(like="moved").max(axis=1).mask(breaks, math.inf)
-    names = {factor.name: factor.settings for factor in ENGINES[engine].factors}
-    values = [preset_values(engine, BEST, names[factor]) for factor in both.index]
-    tuned = [", ".join(f"{name} {value}" for name, value in each.items()) for each in values]
-    shown = ["moved", "ratio_moved", *FOUND, *(f"{name}_alone" for name in FOUND)]
-    table = both[shown].set_axis(pd.Index(tuned, name="set"))
-    return table.iloc[(-matter).argsort(kind="stable")].reset_index()
-
-
 def left_at_default(lines: pd.DataFrame) -> pd.DataFrame:
     """Return each tuned setting alone at its default, first for each engine what costs most."""
     best = lines[lines["preset"] == BEST]
@@ -260,27 +239,19 @@ def finding(tables: Tables) -> str:
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
-    """Return the presets as they are, what each tuned setting buys, and the traps."""
+    """Return what each tuned setting costs at its default, the presets, and the traps."""
     lines = tables["variants"]
     plain = lines["factor"] == ""
     measured = ["ratio_over_eta", "newton_e", "slip_widths", "sink_widths", "step_s"]
     traps = lines[(lines["trap"] != "") & ~plain]
     return {
-        "The setting whose default costs most, where all others are tuned": (
-            left_at_default(lines).drop_duplicates("engine").drop(columns="worse")
-        ),
+        "Each tuned setting at its default, where all others are tuned": left_at_default(lines),
         "Presets as they are": lines.loc[
             plain, ["engine", "preset", "cases", *FOUND, "median_error", *measured]
         ],
         "Defaults at their own step": lines.loc[
             lines["factor"] == OWN_STEPS, ["engine", "level", *FOUND]
         ],
-        **{
-            f"What to set in {engine}: left at its default, and alone": recommendation(
-                lines, engine
-            )
-            for engine in lines["engine"].unique()
-        },
         "Traps": traps[[*KEY, *FOUND, "trap"]],
     }
 

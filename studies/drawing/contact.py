@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engines.declaration import AS_BEST, BY_DEFAULT, LEFT_OUT, OWN_STEP
+from engines.declaration import BY_DEFAULT, OWN_STEP
 from studies.drawing.facets import dot, error_scale, key, panels, preset_dots, rows, strip_beyond
 from studies.drawing.styles import title_of
-from studies.kit.say import capital, part
+from studies.kit.say import capital
 from studies.measures.presets import in_order, look_of
 
 MATTER = 6
@@ -33,15 +32,13 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
         _one_engine(axes, ordered.to_dict("records"))
         axes.set_ylim(most + 0.5, -0.6)
         axes.set_title(title_of(engine), fontsize=11, fontweight="bold", loc="left")
-        axes.text(1.0, most, _summed(others), fontsize=8.5, ha="right", va="center",
-                  color="#555555", transform=axes.get_yaxis_transform())  # fmt: skip
-    words = "error of the peak, median to largest\n(equal steps all at one p dt)"
-    for axes in grid[-2:]:
-        axes.set_xlabel(words, fontsize=10)
+        words = f"{len(others)} others, {others['broken'].sum()} of which break a case"
+        axes.text(1.0, most, words, fontsize=8.5, ha="right", va="center", color="#555555",
+                  transform=axes.get_yaxis_transform())  # fmt: skip
     changed = lines[lines["factor"] != ""]
     drawing.suptitle(
         f"{changed['worse'].sum()} of {len(changed)} changes of a contact, one at a time, break "
-        f"a case;\nthe {MATTER} that matter most for each engine",
+        f"a case;\nthe {MATTER} that matter most for each engine: error of the peak, median to largest",
         fontsize=12,
     )
     marks = [dot("a case fails", "X", "black"), dot("an outcome is wrong", "s", "black",
@@ -87,22 +84,8 @@ def _ordered(lines: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
     return drawn.sort_values(["first", "own", "broken", "max_error"]), varied.iloc[MATTER:]
 
 
-def _summed(others: pd.DataFrame) -> str:
-    if others.empty:
-        return "no other changes"
-    kept, lost = others[~others["broken"]], int(others["broken"].sum())
-    words = [f"{lost} break a case"] * bool(lost)
-    if len(kept):
-        # where the preset says "at rest", no part of its peak is what one moves by
-        moved = part(float(kept.loc[np.isfinite(kept["moved"]), "moved"].max()))
-        words.append(f"{len(kept) if lost else 'they'} move a peak by {moved} at most")
-    return f"{len(others)} others: {', '.join(words)}"
-
-
 def _label(line: dict[Any, Any]) -> str:
-    first, comma, rest = str(line["level"]).partition(", ")
-    names = {AS_BEST: "as tuned", BY_DEFAULT: "its own", OWN_STEP: "its own"}
-    level = names.get(first, first) + comma + rest
     if not line["factor"]:
         return capital(look_of(str(line["preset"])).short)
-    return f"without {level}" if line["factor"] == LEFT_OUT else f"{line['factor']}: {level}"
+    level = str(line["level"]).replace(OWN_STEP, "its own").replace(BY_DEFAULT, "its own")
+    return f"{line['factor']}: {level}"
