@@ -45,7 +45,7 @@ SEEN = {
 }
 """What an engine shows of a scene besides."""
 LABELS = {
-    "frame": ("columns", "load", "amplitude_g", "omega", "refined", "extreme", "phase"),
+    "frame": ("columns", "load", "amplitude_g", "omega", "extreme", "phase"),
     "slide": ("case",),
     "floor": ("floor", "rest_s"),
     "block": ("amplitude_g", "omega", "half_cycles"),
@@ -76,44 +76,40 @@ def _job(scene: str, labels: Row, case: Question, source: Source, **options: Any
 
 
 def _frames(sources: Sequence[Source], quick: bool) -> Iterator[Job]:
-    """Yield the usual frames, the extreme ones, and one in other steps than an engine's own."""
-    posed = [(2, 2.0, *PULSES[0], 1.0, False)]
+    """Yield the usual frames and the extreme ones."""
+    posed = [(2, 2.0, *PULSES[0], False)]
     if not quick:
         frames = product((0.5, 2.0, 4.0), (2, 3), PULSES)
-        posed = [(columns, load, *pulse, 1.0, False) for load, columns, pulse in frames]
+        posed = [(columns, load, *pulse, False) for load, columns, pulse in frames]
         extremes = ((2, 1e-3), (2, 0.1), (2, 10.0), (2, 1e3), (5, 2.0))
-        posed += [(*frame, *PULSES[0], 1.0, True) for frame in extremes]
-        posed += [(2, 2.0, *PULSES[0], refined, False) for refined in (4.0, 2.0, 0.5)]
-    for columns, load, amplitude_g, omega, refined, extreme in posed:
+        posed += [(*frame, *PULSES[0], True) for frame in extremes]
+    for columns, load, amplitude_g, omega, extreme in posed:
         case = Question(
             system=RockingFrame(width=0.5, height=1.5, columns=columns, load=load),
             motion=SinePulse.in_g(amplitude_g, omega=omega, half_cycles=2),
         )
         for source in sources:
             # where in a step an impact falls costs per mille
-            for phase, options in _steps(source, case, 2 if quick else 4, refined):
-                values = columns, load, amplitude_g, omega, refined, extreme, phase
+            for phase, options in enumerate(_steps(source, case, 2 if quick else 4)):
+                values = columns, load, amplitude_g, omega, extreme, phase
                 labels = dict(zip(LABELS["frame"], values, strict=True))
                 yield _job("frame", labels, case, source, **options)
 
 
-def _steps(
-    source: Source, case: Question, phases: int, refined: float
-) -> Iterator[tuple[int, Row]]:
+def _steps(source: Source, case: Question, phases: int) -> Iterator[Row]:
     """Yield steps by which the first impact falls into different parts of equal ones.
 
     With n = t/dt steps before an impact at t, a step of dt (1 + k/(N n)) has it the part k/N of a
     step earlier, for k = 0, 1, ..., N - 1. A source without equal steps is asked once, at its own.
     """
     if not source.engine or source.accurate:
-        if refined == 1.0:
-            yield 0, {}
+        yield {}
         return
     used = source.used
     step = used.step if math.isfinite(used.step) else used.step_s * case.system.p
     impact = exact_of(case).impacts[0].time * case.system.p
     for phase in range(phases):
-        yield phase, {"step": refined * (step * (1.0 + phase / phases * step / impact))}
+        yield {"step": step * (1.0 + phase / phases * step / impact)}
 
 
 def _slides(sources: Sequence[Source], quick: bool) -> Iterator[Job]:
@@ -244,16 +240,12 @@ def tabulate(rows: pd.DataFrame) -> Tables:
         mine = rows[rows["scene"] == scene].reindex(columns=columns)
         parts[scene] = mine.astype({name: TYPES[name] for name in columns if name in TYPES})
     frame, slide = (built(parts[scene]) for scene in ("frame", "slide"))
-    usual = frame[(frame["refined"] == 1.0) & ~frame["extreme"]]
-    first = (frame[["columns", "load", "amplitude_g"]] == [2, 2.0, PULSES[0][0]]).all(axis=1)
-    refined = frame[first].sort_values("refined", kind="stable")
     floors = _lines(parts["floor"], _of_floors, "floor")
     of_floors = ["engine", "floor", "carried", "carried_after_rest", LAG]
     return {
         **parts,
-        "frame-summary": _lines(usual, _of_frames),
+        "frame-summary": _lines(frame[~frame["extreme"]], _of_frames),
         "frame-extremes": _lines(frame[frame["extreme"]], _of_extremes, "columns", "load"),
-        "frame-steps": _lines(refined, _of_steps, "refined"),
         "slide-summary": _lines(slide, _of_slides),
         "floor-summary": floors.reindex(columns=of_floors),
         "block-summary": _lines(parts["block"], _of_blocks),
@@ -288,12 +280,6 @@ def _of_frames(rows: pd.DataFrame) -> Row:
         **{name: rows[name].max() for name in SEEN["frame"]},
         "ms_a_frame": 1e3 * rows["wall_s"].mean(),
     }
-
-
-def _of_steps(rows: pd.DataFrame) -> Row:
-    line = {name: _of_frames(rows)[name] for name in ("frames", "wrong")}
-    steps = max(int(rows["steps"].sum()), 1)
-    return {**line, **_errors(rows), "us_a_step": float(1e6 * rows["wall_s"].sum() / steps)}
 
 
 def _of_extremes(rows: pd.DataFrame) -> Row:

@@ -117,7 +117,7 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
 
 def is_usual(labels: Mapping[str, Any]) -> bool:
     """Say whether a scene is a slide, or a usual frame in an engine's own steps."""
-    usual = not labels.get("extreme") and labels.get("refined", 1.0) == 1.0
+    usual = not labels.get("extreme")
     return usual and labels["scene"] in FURTHER.values()
 
 

@@ -38,7 +38,7 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
     changed = lines[lines["factor"] != ""]
     drawing.suptitle(
         f"{changed['worse'].sum()} of {len(changed)} changes of a contact, one at a time, break "
-        f"a case;\nthe {MATTER} that matter most for each engine: error of the peak, median to largest",
+        f"a case;\nthe {MATTER} that matter most for each engine, median to largest",
         fontsize=12,
     )
     marks = [dot("a case fails", "X", "black"), dot("an outcome is wrong", "s", "black",

@@ -17,7 +17,7 @@ from studies.sources.registry import resolve
 
 FRAME_ROW = {
     **{"scene": "frame", "source": "pymunk:fixed", "columns": 2, "load": 2.0, "amplitude_g": 0.4},
-    **{"omega": 6.2832, "refined": 1.0, "extreme": False, "phase": 0, "reason": ""},
+    **{"omega": 6.2832, "extreme": False, "phase": 0, "reason": ""},
     **{"outcome": "rocked", "steps": 10, "wall_s": 1e-3, "exact": 0.2, "right": True},
     **{"error": 1e-3, "parting": 0.0, "tilt": 0.0, "drift_m": 0.0},
 }
@@ -31,21 +31,17 @@ def of(rows, name):
     return tabulate(pd.DataFrame(rows))[name].to_dict("records")
 
 
-def test_frames_are_counted_apart_by_load_and_by_step():
+def test_extreme_frames_are_counted_apart_by_load():
     heavy = {**FRAME_ROW, "load": 1e3, "extreme": True, "error": -0.3}
     lost = {**heavy, "outcome": "failed", "error": math.nan, "right": False}
-    finer = {**FRAME_ROW, "refined": 0.5, "error": 5e-4, "steps": 20}
-    rows = [FRAME_ROW, heavy, lost, finer, {**FRAME_ROW, "source": "newton", "error": 0.03,
-                                           "outcome": "overturned", "right": False}]  # fmt: skip
+    wrong = {"source": "newton", "error": 0.03, "outcome": "overturned", "right": False}
+    rows = [FRAME_ROW, heavy, lost, {**FRAME_ROW, **wrong}]
     first, other = of(rows, "frame-summary")
     assert (first["frames"], first["wrong"], first["largest_error"]) == (1, 0, 1e-3)
     assert (other["source"], other["wrong"], other["beyond_2_percent"]) == ("newton", 1, 1)
     (line,) = of(rows, "frame-extremes")
     assert (line["load"], line["frames"], line["no_answer"], line["fall_wrong"]) == (1e3, 2, 1, 0)
     assert line["largest_error"] == 0.3
-    half, whole, _ = of(rows, "frame-steps")
-    assert (half["refined"], half["median_error"], half["us_a_step"]) == (0.5, 5e-4, 50.0)
-    assert (whole["refined"], whole["frames"], whole["us_a_step"]) == (1.0, 1, 100.0)
 
 
 def test_a_block_that_is_held_is_no_wrong_slide_and_what_is_not_built_counts_nowhere():
@@ -76,17 +72,13 @@ def test_equal_steps_are_shifted_by_parts_of_a_step():
     asked = [
         job for job in jobs(["pymunk:fixed", "mujoco"], False) if job.labels["scene"] == "frame"
     ]
-    usual = [job for job in asked if not job.labels["extreme"] and job.labels["refined"] == 1.0]
+    usual = [job for job in asked if not job.labels["extreme"]]
     mine = usual[:4]
     impact = simulate(mine[0].case.system, mine[0].case.motion).impacts[0].time
     places = [impact * job.case.system.p / job.options["step"] % 1.0 for job in mine]
     shifts = [(places[0] - place) % 1.0 for place in places]
     assert shifts == pytest.approx([0.0, 0.25, 0.5, 0.75], abs=1e-3)
     assert len(usual) == 18 * (4 + 1) and usual[4].options == {}
-    finer = {refined: [job for job in asked if job.labels["refined"] == refined]
-             for refined in (4.0, 0.5)}  # fmt: skip
-    assert {job.source for job in finer[4.0]} == {"pymunk:fixed"}
-    assert finer[4.0][1].options["step"] == 8.0 * finer[0.5][1].options["step"]
 
 
 def test_rows_are_measured_and_a_process_that_ended_is_a_row():
@@ -119,8 +111,13 @@ def test_the_published_tables_follow_from_their_rows():
     tables = scenes.STUDY.read(PUBLISHED / "scenes")
     rows = pd.concat([tables[scene] for scene in scenes.LABELS], ignore_index=True)
     again = tabulate(rows)
-    for name in ("frame-summary", "frame-extremes", "frame-steps", "slide-summary",
-                 "floor-summary", "block-summary"):  # fmt: skip
+    for name in (
+        "frame-summary",
+        "frame-extremes",
+        "slide-summary",
+        "floor-summary",
+        "block-summary",
+    ):
         pd.testing.assert_frame_equal(again[name], tables[name], check_dtype=False)
 
 

@@ -13,7 +13,16 @@ from analytic import frame_faults, simulate
 from engines.scene import BEAM_DEPTH, SPACING
 from studies import respond
 from studies.__main__ import run as run_command
-from studies.cases.drawn import FRICTION, KEPT, LEAST_NORMAL, census, draw, everything, fate_of
+from studies.cases.drawn import (
+    FRICTION,
+    KEPT,
+    LEAST_NORMAL,
+    RandomCase,
+    census,
+    draw,
+    everything,
+    fate_of,
+)
 from studies.kit.jobs import Job, Question
 from studies.kit.run import run
 from studies.measures.differences import sensitivity_of
@@ -248,3 +257,19 @@ def test_a_folder_of_one_form_is_refused_to_another(tmp_path, capsys):
     capsys.readouterr()
     refused(capsys, [*few, "--halves"], str(tmp_path), "also holds results")
     refused(capsys, [*few, "--seed", "2"], str(tmp_path), "folder")
+
+
+@pytest.mark.slow
+def test_estimates_are_made_with_a_friction_and_a_step(tmp_path):
+    few = ["--cases", "1", "--tests", "1", "--sources", "pymunk:naive"]
+    own = ["--friction", "0.9", "--dt", "0.003"]
+    assert run_command(["validate", "--halves", *few, *own, "--out", str(tmp_path / "a")]) == 0
+    rows = pd.read_csv(tmp_path / "a" / "estimate.csv", dtype={"message": str})
+    assert len(rows) == 4
+    for row in rows.to_dict("records"):
+        names = ("case", "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p")
+        case = RandomCase(**{name: row[name] for name in names})
+        step = 0.003 * case.block.p / (2.0 if row["half"] else 1.0)
+        answer = respond("pymunk:naive", case.block, case.motion, friction=0.9, step=step)
+        assert row["peak_ratio"] == answer.peak_ratio and row["steps"] == answer.steps
+    assert run_command(["validate", "--halves", *few, "--out", str(tmp_path / "a")]) == 2
