@@ -7,23 +7,17 @@ from typing import Any
 import pandas as pd
 
 
-def with_every_finer(keeps: pd.Series[Any], *uses: pd.Series[Any]) -> pd.Series[bool]:
-    """Return which settings, from coarse to fine, keep an error together with every finer one.
+def cheapest_kept(
+    lines: pd.DataFrame, keeps: pd.Series[Any], *methods: pd.Series[Any]
+) -> pd.Series[Any] | None:
+    """Return the line of least wall_s that keeps an error as every finer one does; None without.
 
-    `keeps` says whether each does by itself, and `uses` of what they are settings, as a method, or
-    an engine and a preset; without, all are of one.
+    The lines are settings from coarse to fine, of one method or of those in `methods`; `keeps` says
+    whether each keeps the error by itself.
     """
     from_fine = keeps.astype(bool)[::-1]
-    each = from_fine.groupby(list(uses), sort=False) if uses else from_fine
-    return each.cummin()[::-1]
-
-
-def cheapest_kept(
-    lines: pd.DataFrame, keeps: pd.Series[Any], *uses: pd.Series[Any]
-) -> pd.Series[Any] | None:
-    """Return the line of least wall_s among those `with_every_finer`; None if there is none."""
-    good = lines[with_every_finer(keeps, *uses)]
-    return None if good.empty else good.sort_values("wall_s").iloc[0]
+    kept = (from_fine.groupby(list(methods), sort=False) if methods else from_fine).cummin()[::-1]
+    return lines[kept].sort_values("wall_s").iloc[0] if kept.any() else None
 
 
 def cheapest_below(lines: pd.DataFrame, target: float) -> pd.Series[Any] | None:

@@ -70,10 +70,7 @@ def estimate_of(row: Mapping[Any, Any], finer: Mapping[Any, Any]) -> float:
 
 
 def factors(lines: pd.DataFrame) -> pd.DataFrame:
-    """Return for each source by how much its estimates are to be multiplied.
-
-    The columns tested and bounded are of the cases that test, all others of those that calibrate.
-    """
+    """Return for each source by how much its estimates are to be multiplied, tried on others."""
     table = []
     for source, rows in lines.groupby("source", sort=False):
         mine, other = (rows[rows["set"] == use] for use in (CALIBRATE, TEST))
