@@ -46,9 +46,6 @@ MAKING = re.compile("(create|add|load)_?")
 TOKEN = re.compile("\x02(\\d+)\x03")
 """What stands for the name of an object until the lines are written."""
 
-NOTHING: tuple[Any, ...] = ()
-"""What a function answers that says nothing."""
-
 LAST = re.compile("^[A-Z].*(?=[A-Z][a-z])")
 """All but the last word of the name of a class."""
 
@@ -199,18 +196,19 @@ class Notes:
         ]
         arguments = ", ".join([*map(self.said, given), *shown])
         call = f"{self.said(function, argument=self._chained)}({arguments})"
-        if it is None or it is NOTHING or id(it) in self._known:
-            self.write(call)
-            return self._known.get(id(it))
+        known = self._known.get(id(it))
+        if it is None or known:
+            self._lines += [] if known and name.lower().startswith("get") else [(call, ())]
+            return known
         several = type(it) in (list, tuple)
         first = len(self._made)
         made = [self._object(each, kind) for each in (it if several else [it])]
         self.write(call, range(first, len(self._made)))
         return type(it)(made) if several else made[0]
 
-    def _object(self, it: Any, function: str, line: int | None = None) -> Any:
+    def _object(self, it: Any, function: str) -> Any:
         name = f"\x02{len(self._made)}\x03"
-        self._made.append(_Made(function, len(self._lines) if line is None else line))
+        self._made.append(_Made(function, len(self._lines)))
         if isinstance(it, PLAIN):
             return constant(it, name)
         self._known[id(it)] = noted = Noted(self, it, name)
@@ -218,8 +216,9 @@ class Notes:
 
     def got(self, it: Any, text: str) -> Any:
         """Note how an object was got, and return it noted."""
-        self.write(text, [len(self._made)])
-        return self._object(it, "body", len(self._lines) - 1)
+        made = self._object(it, "body")
+        self.write(text, [len(self._made) - 1])
+        return made
 
     def found(self, it: Any, name: str) -> Any:
         """Return a part of something noted: a plain value as it is, or named where it is fixed."""
