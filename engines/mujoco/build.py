@@ -268,7 +268,7 @@ def _row(numbers: tuple[float, ...] | list[float]) -> str:
 
 
 def coordinates(scene: Scene, s: MujocoSettings) -> tuple[list[float], list[float]]:
-    """Return qpos and qvel from which the bodies set out; see `Arrays`."""
+    """Return the first of qpos and qvel, from which the bodies set out; see `Arrays`."""
     places: list[float] = []
     velocities: list[float] = []
     for body in scene.bodies:
@@ -279,9 +279,6 @@ def coordinates(scene: Scene, s: MujocoSettings) -> tuple[list[float], list[floa
         else:
             places += (at.x, 0.0, at.z, math.cos(half), 0.0, math.sin(half), 0.0)
             velocities += (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
-    if scene.frame == "world" and s.floor == "weld":
-        places += (0.0, 0.0, -scene.bodies[0].height, 1.0, 0.0, 0.0, 0.0)
-        velocities += 6 * (0.0,)
     return places, velocities
 
 
@@ -301,7 +298,9 @@ class MujocoWorld:
         self._data = self._mj.MjData(self.model)
         self._fault = self._read_back(dt_s)
         if not all(body.at.at_rest for body in scene.bodies):
-            self._data.qpos[:], self._data.qvel[:] = coordinates(scene, s)
+            places, velocities = coordinates(scene, s)
+            self._data.qpos[: len(places)] = places
+            self._data.qvel[: len(velocities)] = velocities
         self.held = begin_contact(scene, s, dt_s, self.model.npair)
         self.arrays = self._arrays_of()
         self.drive: Any = None
@@ -455,14 +454,14 @@ def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
     """Return a scene as a model of MuJoCo; see `engines.world.Script`."""
     world = MujocoWorld(replace(scene, compiled=False), settings, dt_s)
     s, root, welded = world.settings, ElementTree.fromstring(world.xml), world.held.welded
-    world.close()
     ElementTree.indent(root)
     model = ElementTree.tostring(root, encoding="unicode") + "\n"
     build = [f'model = mujoco.MjModel.from_xml_path(str(HERE / "{MODEL}"))']
     build.append("data = mujoco.MjData(model)")
     if not all(body.at.at_rest for body in scene.bodies):
-        build += [f"data.qpos[:] = {coordinates(scene, s)[0]}"]
-        build += [f"data.qvel[:] = {coordinates(scene, s)[1]}"]
+        build.append(f"data.qpos[:] = {world.arrays.position.tolist()}")
+        build.append(f"data.qvel[:] = {world.arrays.velocity.tolist()}")
+    world.close()
     step = ["model.opt.gravity[:] = pull_x, 0.0, pull_z", "mujoco.mj_step(model, data)"]
     if scene.frame == "world":
         # a base without a body of its own is moved after the step
