@@ -45,11 +45,12 @@ def solve_cases(
     threads: int | None,
     outputs: tuple[Any, ...],
     take: Callable[..., None],
+    above: float = 0.0,
 ) -> list[NDArray[Any]]:
     """Solve the cases of `peak_ratios`, which need no more memory than they and the outputs do.
 
     take is called with each `Part` and the arrays of its outputs, of the types in `outputs`; whole,
-    these are returned in the broadcast shape.
+    these are returned in the broadcast shape. Peaks are looked for above a rotation.
     """
     declared, eta = find_model(model), 0.0 if restitution is None else restitution
     columns = np.broadcast_arrays(*given, eta)
@@ -68,7 +69,7 @@ def solve_cases(
         steps = np.max(half_cycles * (1.0 + math.pi / omega), initial=0.0)
         solve = PULSES.few(size, steps)
         exactly, pulse = accuracy(TOLERANCE), np.zeros((2, 7))
-        ends = solve(declared.linear, exactly, constants, cases, pulse, workspace())
+        ends = solve(declared.linear, exactly, constants, cases, above, pulse, workspace())
         take(Part(where, cases, constants, ends), *(array[where] for array in written))
 
     starts = range(0, size, PART)
@@ -111,10 +112,11 @@ def solve_pulses(
     exactly: Accuracy,
     constants: FloatArray,
     cases: FloatArray,
+    above: float,
     pulse: FloatArray,
     work: FloatArray,
 ) -> FloatArray:
-    """Return the ends of cases; all is as in `Part`, pulse (2, 7) is zero, and work spare."""
+    """Return the ends of cases; all is as in `Part` or for `march`, pulse (2, 7) is zero."""
     count = len(cases[0])
     ends = np.empty((8, count))
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
@@ -127,7 +129,7 @@ def solve_pulses(
         pulse[1][0] = pulse[1][1] = over
         end = End(BROKEN, 0.0, 0, 0, 0, 0.0, 0.0, 0.0)
         if abs(over) < math.inf:
-            end = march(law, exactly, pulse, UPRIGHT, notes, work)
+            end = march(law, exactly, pulse, UPRIGHT, above, notes, work)
         ends[0, i], ends[1, i], ends[2, i], ends[3, i] = (
             end.outcome,
             end.peak,

@@ -170,7 +170,7 @@ def scaled(
         harder = moving * np.array([1.0, 1.0, stronger, 1.0, 1.0, stronger, stronger])
         moved = posed.law._replace(eta=min(livelier * posed.law.eta, 1.0))
         march = MARCH.few(1, posed.steps)
-        end = march(moved, accuracy(TOLERANCE), harder, posed.start, notes, workspace())
+        end = march(moved, accuracy(TOLERANCE), harder, posed.start, 0.0, notes, workspace())
         return end.peak, OUTCOMES[end.outcome]
 
     return solve

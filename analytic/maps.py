@@ -6,12 +6,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.cases import Part, solve_cases
-from analytic.kernels.excursions import AT_REST, OVERTURNED
+from analytic.kernels.excursions import AT_REST, LYING, OVERTURNED
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray
 
 NOT_LIFTED, SURVIVES, FAILED = -2, -1, -3
 """Modes that are no number of impacts."""
+
+NO_PEAK = 0.999 * LYING
+"""No peak is looked for below this rotation [rad], from which on a fall is."""
 
 
 class Modes(NamedTuple):
@@ -91,4 +94,4 @@ def overturning_modes(
 
     given = (alpha, amplitude_g, omega_over_p, half_cycles)
     kinds = (np.int32, np.float64, np.int32)
-    return Modes(*solve_cases(given, model, restitution, threads, kinds, take))
+    return Modes(*solve_cases(given, model, restitution, threads, kinds, take, NO_PEAK))

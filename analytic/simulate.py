@@ -117,7 +117,7 @@ def simulate(
     march = MARCH.few(1, posed.steps)
 
     def solve(notes: Notes) -> End:
-        return march(law, exactly, moving, begin, notes, workspace())
+        return march(law, exactly, moving, begin, 0.0, notes, workspace())
 
     watched = isinstance(block, RigidBlock) and not law.linear
     return as_response(block, posed, solve, times is not None, watched)

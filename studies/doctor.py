@@ -8,7 +8,8 @@ from itertools import chain
 from pathlib import Path
 
 from analytic import simulate
-from analytic.kernels.forms import SOURCES, kept_in
+from analytic.kernels.forms import SOURCES
+from analytic.kernels.kept import kept_in
 from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from engines.run.look import PACKAGE

@@ -257,7 +257,13 @@ def sample_step(
 
 
 def march(
-    law: Law, accuracy: Accuracy, moving: FloatArray, start: Start, notes: Notes, work: FloatArray
+    law: Law,
+    accuracy: Accuracy,
+    moving: FloatArray,
+    start: Start,
+    above: float,
+    notes: Notes,
+    work: FloatArray,
 ) -> End:
     """Follow one response.
 
@@ -270,12 +276,14 @@ def march(
         Ground motion, of which nothing moves on the last segment. The response is followed to its
         end; outcome and peak of what comes after follow from energy.
     start : Start, state at time zero
+    above : float
+        The peak is looked for above this rotation [rad]; where nobody asks for it, time is saved.
     notes : Notes
     work : ndarray (MAX_DEPTH + 12, ORDER + 1), spare
     """
     watched, last = len(notes.limits) > 0, moving[-1][1]
     side, y, v = start
-    tau, peak, lead = 0.0, y, 1 if y == 0.0 else 0
+    tau, peak, lead = 0.0, max(y, above), 1 if y == 0.0 else 0
     j = steps = impacts = events = n = 0
     while True:
         if side == 0.0:

@@ -6,21 +6,15 @@ for each version of the sources. So how many cases there are and how long they t
 beforehand which form is called.
 """
 
-import errno
-import hashlib
 import inspect
-import os
-import stat
-import tempfile
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import suppress
-from functools import cache
+from collections.abc import Callable
 from pathlib import Path
-from shutil import rmtree
 from typing import Any, ClassVar, Generic, ParamSpec, TypeVar
 
 import numpy as np
+
+from analytic.kernels.kept import FULL, cache_folder, holds, kept_in
 
 Given = ParamSpec("Given")
 Answer = TypeVar("Answer")
@@ -29,8 +23,6 @@ SOURCES = Path(__file__).parents[__name__.count(".") - 1]
 """The folder of the package that holds the reference's kernels and all that they call."""
 FEW_CASES, FEW_STEPS = 200, 3000
 """Cases of a process, and steps of one, up to which Python takes less time."""
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
-"""Why a folder that could be written no longer can."""
 PLAIN = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
 """How what kernels call is compiled: it makes no array, and so counts no references to any."""
 
@@ -95,21 +87,13 @@ def compiled(function: Callable[Given, Answer], folder: Path | None) -> Callable
     """
     import numba
 
-    known: Any = numba.config
-    tell, name = Kernel.tell, f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}"
-    if tell is not None and not (folder and any(folder.rglob(f"{name}-*.nbi"))):
-        Kernel.tell = None
+    if Kernel.tell is not None and not holds(folder, function):
+        tell, Kernel.tell = Kernel.tell, None
         tell("compiling, once: some 10 to 40 s")
-    with _compiling:
+    with _compiling, cache_folder(folder):
         _introduce(function)
-        before = known.CACHE_DIR
-        known.CACHE_DIR = str(folder or "")  # numba asks for it where it decorates
-        try:
-            compile_ = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")
-            made: Any = compile_(function)
-        finally:
-            known.CACHE_DIR = before
-    return made
+        njit: Any = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")
+        return njit(function)  # type: ignore[no-any-return]
 
 
 def _introduce(function: Callable[..., Any]) -> None:
@@ -122,51 +106,3 @@ def _introduce(function: Callable[..., Any]) -> None:
             _known.add(called)
             _introduce(called)
             register_jitable(**PLAIN)(called)
-
-
-def are_compiled(sources: Path) -> bool:
-    """Return whether any kernel in a folder was compiled before, by this process or another one."""
-    folder = kept_in(sources)
-    return folder is not None and any(folder.rglob("*.nbi"))
-
-
-@cache
-def kept_in(sources: Path) -> Path | None:
-    """Return where the compiled kernels of a package are kept; None if no place can be written.
-
-    The folder is named by what all modules of the package say: numba sees a change of a kernel's
-    own module, not of a function that it calls in another one.
-    """
-    digest = hashlib.sha256(Path(__file__).read_bytes())
-    for path in sorted(sources.rglob("*.py")):
-        digest.update(f"{path.relative_to(sources)}\0".encode() + path.read_bytes() + b"\0")
-    name = f"kernels-{digest.hexdigest()[:16]}"
-    for place in _places(sources):
-        with suppress(OSError):
-            (place / name).mkdir(parents=True, exist_ok=True)
-            tempfile.TemporaryFile(dir=place / name).close()
-            if place.parent == sources:
-                for old in place.glob("kernels-*"):
-                    if old.name != name:
-                        rmtree(old, ignore_errors=True)
-            return place / name
-    return None
-
-
-def _places(sources: Path) -> Iterator[Path]:
-    """Yield where compiled kernels may be kept: as numba would, then where temporary files are."""
-    if chosen := os.environ.get("NUMBA_CACHE_DIR"):
-        yield Path(chosen)
-    yield sources / "__pycache__"
-    with suppress(RuntimeError):
-        yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rocking"
-    private = Path(tempfile.gettempdir(), f"rocking-{os.getuid()}")
-    with suppress(OSError):
-        private.mkdir(mode=0o700, exist_ok=True)
-        found = private.lstat()  # nobody else may write there: what lies in it will be run
-        if (
-            stat.S_ISDIR(found.st_mode)
-            and found.st_uid == os.getuid()
-            and not found.st_mode & 0o077
-        ):
-            yield private

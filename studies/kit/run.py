@@ -14,7 +14,8 @@ import numpy as np
 from tqdm import tqdm
 
 from analytic.kernels.compiled import compile_all
-from analytic.kernels.forms import Kernel, are_compiled
+from analytic.kernels.forms import Kernel
+from analytic.kernels.kept import are_compiled
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason, Response
 from engines.run.look import PACKAGE, compile_look

@@ -23,7 +23,8 @@ from typing import Any, Self
 
 import pandas as pd
 
-from analytic.kernels.forms import SOURCES, are_compiled
+from analytic.kernels.forms import SOURCES
+from analytic.kernels.kept import are_compiled
 from engines import ENGINES
 from studies.cases.refusal import BadInputError
 from studies.kit.identity import COMPUTING, NOT_INSTALLED, ROOT, Maker, changed, version_of, why

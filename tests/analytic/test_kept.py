@@ -11,7 +11,7 @@ import numba
 import pytest
 from numba.core import caching
 
-from analytic.kernels import forms
+from analytic.kernels import forms, kept
 
 KERNELS = {
     "__init__.py": "",
@@ -34,10 +34,10 @@ STEPS = Kernel(steps)
 PLACES = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME", "TMPDIR")
 PROGRAM = """
 from analytic.steps import STEPS
-from analytic.kernels import forms
+from analytic.kernels import forms, kept
 value = STEPS.compiled(1.0)
 hits = sum(STEPS._compiled.stats.cache_hits.values())
-print(value, hits, forms.kept_in(forms.SOURCES))
+print(value, hits, kept.kept_in(forms.SOURCES))
 """
 
 
@@ -48,7 +48,8 @@ def package(tmp_path):
         path = tmp_path / "package" / "analytic" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    shutil.copy(forms.__file__, tmp_path / "package" / "analytic" / "kernels")
+    for module in (forms, kept):
+        shutil.copy(module.__file__, tmp_path / "package" / "analytic" / "kernels")
     return tmp_path / "package"
 
 
@@ -111,7 +112,7 @@ def test_a_folder_is_named_by_all_sources(package, tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept"))
 
     def name():
-        return forms.kept_in.__wrapped__(package / "analytic").name
+        return kept.kept_in.__wrapped__(package / "analytic").name
 
     names = [name()]
     for path in ("steps.py", "inner/law.py", "inner/more.py"):
@@ -130,7 +131,7 @@ def test_other_kernels_of_the_user_are_kept_where_they_were():
     kernel = forms.Kernel(twice)
     assert kernel.compiled(2.0) == 4.0
     assert before == numba.config.CACHE_DIR
-    assert kernel._compiled.stats.cache_path.startswith(str(forms.kept_in(forms.SOURCES)))
+    assert kernel._compiled.stats.cache_path.startswith(str(kept.kept_in(forms.SOURCES)))
 
 
 def test_a_kernel_runs_where_the_disk_is_full(monkeypatch):
