@@ -9,7 +9,7 @@ from analytic.block import GRAVITY, RigidBlock, Rocker, housner_restitution
 from analytic.cases import peak_ratios
 from analytic.conditioning import condition_numbers, conditioning, sensitivities, sensitivity
 from analytic.frame import RockingFrame, frame_restitution
-from analytic.frame_forces import frame_demands, frame_faults
+from analytic.frame_forces import frame_demands
 from analytic.maps import Modes, overturning_modes
 from analytic.models import MODELS
 from analytic.motion import Delayed, Motion, SinePulse, Still
@@ -39,7 +39,6 @@ __all__ = [
     "condition_numbers",
     "conditioning",
     "frame_demands",
-    "frame_faults",
     "frame_restitution",
     "housner_restitution",
     "integrate",

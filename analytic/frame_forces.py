@@ -34,18 +34,8 @@ SAMPLES = 4000
 FREE_TIME = 8.0
 """Time [1/p] of free rocking after the motion that is looked at, beside the last and least swing:
 as swings grow smaller their demands approach that one's."""
-
-
 TINY = 1e-12
 """Rotation over alpha that stands for one side of an upright column."""
-
-
-class States(NamedTuple):
-    """States of a frame: rotation [rad], its rate [rad/s], acceleration of the base [m/s2]."""
-
-    theta: FloatArray
-    rate: FloatArray
-    ground: FloatArray
 
 
 class Demands(NamedTuple):
@@ -106,46 +96,6 @@ def frame_demands(
     )
 
 
-def frame_faults(
-    frame: RockingFrame,
-    motion: Motion,
-    start: tuple[float, float] = REST,
-    *,
-    spacing: float,
-    depth: float,
-    friction: float,
-) -> tuple[str, ...]:
-    """Name what the reference takes for granted and a frame does not hold, if anything.
-
-    A beam that tips, or else a contact that opens, or else those that slide.
-
-    Parameters
-    ----------
-    frame, motion, start, spacing, depth
-        As for `frame_demands`.
-    friction : float
-        Coefficient mu of all contacts.
-
-    Examples
-    --------
-    >>> frame = RockingFrame(width=0.5, height=1.5, load=2.0)
-    >>> pulse = SinePulse.in_g(0.5, omega=9.0)
-    >>> frame_faults(frame, pulse, spacing=2.0, depth=0.2, friction=1.0)
-    ()
-    """
-    needs = frame_demands(frame, motion, start, spacing=spacing, depth=depth)
-    if needs.spacing >= spacing:
-        return (f"the beam would tip: L = {spacing:g} m, needs {needs.spacing:.3g}",)
-    if needs.pressing <= 0.0:
-        return (f"a contact would open: {needs.pressing:.3g} of its weight presses it",)
-    slides = {"feet": needs.base, "beam": needs.top}
-    return tuple(
-        f"the {what} would slide: mu = {friction:g}, needs {needed:.3g}"
-        for what, needed in slides.items()
-        if needed > friction
-    )
-
-
 class Push(NamedTuple):
     """Forces over m_c g, or impulses over a common one, of a column and of its share of the beam.
 
@@ -164,31 +114,25 @@ def _pushes(frame: RockingFrame, motion: Motion, response: Response) -> Iterator
     """Yield the forces of a response and False; where it has impacts, their impulses and True."""
     if response.outcome is Outcome.FAILED or response.history is None:
         raise ValueError(f"the response of the frame failed: {response.message}")
-    time, theta, rate = (
-        response.history.time,
-        response.history.theta,
-        response.history.velocity,
-    )
-    struck = np.array([impact.time for impact in response.impacts])
-    before = np.array([impact.velocity_before for impact in response.impacts])
-    after = np.array([impact.velocity_after for impact in response.impacts])
+    history = response.history
+    time, theta, rate = history.time, history.theta, history.velocity
+    struck, before, after = np.array(response.impacts).reshape(-1, 3).T
     last = np.full(int(response.outcome is Outcome.ROCKED), TINY * frame.alpha)
     sides = TINY * frame.alpha * np.sign(np.concatenate((-before, after)))
     shaken = motion.acceleration(np.concatenate((time, struck, struck)))
-    states = States(
+    states = (
         np.concatenate((theta, sides, last)),
         np.concatenate((rate, before, after, 0.0 * last)),
         np.concatenate((shaken, 0.0 * last)),
     )
-    kept = np.abs(states.theta) < frame.alpha
+    kept = np.abs(states[0]) < frame.alpha
     if kept.any():
-        yield _forces(frame, States(*(part[kept] for part in states))), False
+        yield _forces(frame, *(part[kept] for part in states)), False
     if struck.size:
         yield _impulses(frame, np.sign(before[:1])), True
 
 
-def _forces(frame: RockingFrame, states: States) -> Push:
-    theta, rate, ground = states
+def _forces(frame: RockingFrame, theta: FloatArray, rate: FloatArray, ground: FloatArray) -> Push:
     g, side, z = frame.gravity, np.sign(theta), frame.alpha - np.abs(theta)
     a = ground / g
     sine, cosine = np.sin(z), np.cos(z)

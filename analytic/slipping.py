@@ -96,23 +96,10 @@ def slid(
     until: float | None,
     sampled: FloatArray | None,
 ) -> Response:
-    """Solve the response of a sliding block.
+    """Return the response of a block that starts from a place [m] at a rate [m/s].
 
-    Parameters
-    ----------
-    block : SlidingBlock
-    motion : Motion
-    start : (float, float)
-        Place x [m] and rate x' [m/s] at time zero, relative to the base.
-    until : float or None
-        Time [s] to follow it to; by default, until the motion has ended and the block stands.
-    sampled : ndarray or None
-        Times [s] at which to sample the history, of x and x'.
-
-    Returns
-    -------
-    Response
-        With a slip for every time that x' vanishes, and the last as far as it got.
+    It is followed to a time [s] or, without one, until the motion has ended and the block stands.
+    The last slip is as far as it got.
     """
     began = time.perf_counter()
     x, v = _checked(start)

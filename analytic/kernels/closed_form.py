@@ -59,13 +59,6 @@ def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple
     The paper's equations (6)-(10) and (17)-(21), corrected (EQUATIONS.md, "From (1) and (2)"; on a
     straight segment EQUATIONS.md, "A record"), with the terms grouped so that short steps lose no
     digits. With a lead of 3, after a smooth uplift, y'' starts from zero.
-
-    Parameters
-    ----------
-    law : Law, a linear one
-    segment : ndarray (7,), the ground motion
-    begin : State
-    h : float, time after it [1/p]
     """
     start, _, amplitude, omega, phase, offset, slope = segment
     side, tau, lead, y, v = begin
@@ -92,11 +85,6 @@ def work_to(law: Law, y: float) -> float:
 
     The integral of -y'' without a ground acceleration: k^2 y (2c - y)/2 of a linear model, and
     cos(alpha - y) - cos(alpha) of the exact one, as a product.
-
-    Parameters
-    ----------
-    law : Law
-    y : float, rotation [rad]
     """
     if law.linear:
         return 0.5 * law.k * law.k * y * (2.0 * law.saddle - y)
@@ -104,13 +92,7 @@ def work_to(law: Law, y: float) -> float:
 
 
 def turning_rotation(law: Law, work: float) -> float:
-    """Return the rotation [rad] at which a free block has lost `work`; inf if it passes the saddle.
-
-    Parameters
-    ----------
-    law : Law
-    work : float, v^2/2 at y = 0 [p^2]: `work_to` is solved for y
-    """
+    """Return the rotation at which a free block has lost `work`; inf if it passes the saddle."""
     barrier = work_to(law, law.saddle)
     if work >= barrier:
         return math.inf
@@ -126,12 +108,9 @@ def turning_rotation(law: Law, work: float) -> float:
 
 
 def free_peak(law: Law, y: float, v: float) -> float:
-    """Return the largest rotation [rad] still to come of a free block, inf when it overturns.
+    """Return the largest rotation still to come of a free block, inf when it overturns.
 
-    Parameters
-    ----------
-    law : Law
-    y, v : float, state at the end of the motion [rad, rad p]; an inward one passes one impact
+    One that moves inward passes one impact.
     """
     if is_lost(law, y, v):
         return math.inf
@@ -142,13 +121,7 @@ def free_peak(law: Law, y: float, v: float) -> float:
 
 
 def is_lost(law: Law, y: float, v: float) -> bool:
-    """Say whether a free block has passed the saddle for good.
-
-    Parameters
-    ----------
-    law : Law
-    y, v : float, its state [rad, rad p]; beyond the saddle one that moves inward may come back
-    """
+    """Say whether a free block has passed the saddle, from where a fast one may come back."""
     if y < law.saddle:
         return False
     return v >= 0.0 or 0.5 * v * v + work_to(law, y) <= work_to(law, law.saddle)

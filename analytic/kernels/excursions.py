@@ -106,17 +106,7 @@ class Step(NamedTuple):
 def expand(
     law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, work: FloatArray
 ) -> float:
-    """Fill work[0] with the series of y from a state; return the step [1/p] it allows.
-
-    Parameters
-    ----------
-    law : Law
-    accuracy : Accuracy, degree of the series, and tolerance of the step
-    segment : ndarray (7,), ground motion
-    begin : State
-    work : ndarray (>= 5, >= order + 1), left with the series of y and f, of the exact model also of
-        sin z and cos z
-    """
+    """Fill work[0] with the series of y from a state; return the step [1/p] it allows."""
     y, f = work[0], work[1]
     y[0], y[1] = begin.y, begin.v
     expand_forcing(segment, begin.tau, begin.side, accuracy.order, f)
@@ -131,13 +121,7 @@ def expand(
 def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: FloatArray) -> float:
     """Return where sum d[i] x^i first equals `level` in (0, 1]; 2 if nowhere.
 
-    Parameters
-    ----------
-    d : ndarray (>= order + 1,), coefficients on a step that is [0, 1]
-    order : int, degree
-    lead : int, number of the first coefficients that are zero: their root at x = 0 is left out
-    level : float, 0 where lead is not
-    work : ndarray (>= MAX_DEPTH + 3, >= order + 1), spare
+    A lead, whose root at x = 0 is left out, is for a level of 0 alone.
     """
     q = work[0]
     degree = order - lead
@@ -170,14 +154,6 @@ def take_step(
 
     Leaves the series of y, the forcing, sin(z) and cos(z) in work[:4], and that of y on [0, 1] in
     work[4].
-
-    Parameters
-    ----------
-    law, accuracy, work
-        As for `march`.
-    segment : ndarray (7,), ground motion at the time of the state
-    begin : State
-    peak : float, largest rotation so far [rad]
     """
     series, d, spare = work[0], work[4], work[5:]
     order, lead, end = accuracy.order, begin.lead, segment[1]
@@ -230,19 +206,7 @@ def sample_step(
     notes: Notes,
     n: int,
 ) -> int:
-    """Sample a step; return the number of samples so far.
-
-    Parameters
-    ----------
-    law : Law
-    segment : ndarray (7,), ground motion
-    begin : State, at the begin of the step
-    d : ndarray (>= order + 1,), series of y on [0, 1]
-    order : int, its degree
-    step : Step, as it was taken
-    notes : Notes, whose samples are written
-    n : int, number of samples before
-    """
+    """Sample a step; return the number of samples so far."""
     h = step.h
     while n < len(notes.times) and notes.times[n] <= begin.tau + step.x * h:
         at = notes.times[n] - begin.tau

@@ -30,13 +30,6 @@ def forces(law: Law, side: float, a: float, y: float, v: float) -> tuple[float, 
     V and U of EQUATIONS.md, "The rocking frame", with the lever R of a block, R p^2 = 3g/4: from
     the acceleration of the centre of mass, which turns with the diagonal at z = alpha - y from the
     vertical.
-
-    Parameters
-    ----------
-    law : Law
-    side : float, s
-    a : float, ground acceleration [g]
-    y, v : float, state [rad, rad p]
     """
     z = law.alpha - y
     rate = acceleration(law, side, a, y)
@@ -58,29 +51,12 @@ def watch(limits: FloatArray, law: Law, side: float, a: float, y: float, v: floa
 
 
 def watch_rest(limits: FloatArray, segments: FloatArray, j: int, begin: float, end: float) -> None:
-    """Watch a block at rest between two times: it needs the friction that carries it along.
-
-    Parameters
-    ----------
-    limits : ndarray (4,), of which the friction ratio is updated
-    segments : ndarray (m, 7), ground motion
-    j : int, segment of the first time
-    begin, end : float, the times [1/p]
-    """
+    """Watch a block at rest between two times: it needs the friction that carries it along."""
     limits[1] = max(limits[1], strongest_between(segments, j, begin, end))
 
 
 def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -> None:
-    """Watch a train of impacts that is summed, from its begin to rest.
-
-    Parameters
-    ----------
-    limits : ndarray (4,), updated
-    law : Law
-    side : float, side that the block turns to first
-    a : float, ground acceleration [g]
-    v : float, rate after the first impact [rad p]
-    """
+    """Watch a train of impacts that is summed, from its begin to rest."""
     if v == 0.0:
         return
     watch(limits, law, side, a, 0.0, v)
@@ -92,15 +68,7 @@ def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -
 def watch_to_passing(
     limits: FloatArray, law: Law, order: int, h: float, x: float, work: FloatArray
 ) -> None:
-    """Watch a step that ends beyond the critical rotation until it passes that, if it does.
-
-    Parameters
-    ----------
-    law : Law
-    limits, order, h, x, work
-        As for `watch_step`, which is to watch the whole step afterwards; work[4] is the series of y
-        stretched to [0, 1].
-    """
+    """Watch a step beyond the critical rotation until it passes that, before the whole of it."""
     beyond, spare = work[5], work[6:]
     for i in range(order + 1):
         beyond[i] = work[4][i]
@@ -128,16 +96,6 @@ def watch_step(limits: FloatArray, order: int, h: float, x: float, work: FloatAr
     The least normal force N is a minimum of its polynomial. The friction is the largest ratio mu
     of abs(T) to N: T - mu N has no positive maximum, and each one there is gives a better mu
     (Dinkelbach 1967).
-
-    Parameters
-    ----------
-    limits : ndarray (4,), updated
-    order : int, degree of the series
-    h : float, length of the step [1/p]
-    x : float, part of it to be watched, from its begin
-    work : ndarray (>= MAX_DEPTH + 11, >= order + 1)
-        Series of y, f, sin z and cos z in work[:4], as `excursions.expand` leaves them; spare from
-        work[5] on.
     """
     normal, tangential, excess, spare = work[5], work[6], work[7], work[8:]
     degree = order - 2
@@ -172,16 +130,7 @@ def expand_forces(
     tangential: FloatArray,
     square: FloatArray,
 ) -> None:
-    """Write the series of the contact forces over weight, on [0, 1] for a step.
-
-    Parameters
-    ----------
-    degree : int, of the series that are written
-    h : float, length of the step [1/p]
-    series : ndarray (4, >= degree + 3), series of y, f, sin z and cos z
-    normal, tangential : ndarray (>= degree + 1,), to be written; the latter is folded, as y is
-    square : ndarray (>= degree + 1,), to be written: the series of y'^2
-    """
+    """Write the series of the contact forces over weight, on [0, 1] for a step."""
     y, f, sine, cosine = series[0], series[1], series[2], series[3]
     scale = 1.0
     for n in range(degree + 1):
@@ -198,14 +147,7 @@ def expand_forces(
 
 
 def watch_free(limits: FloatArray, law: Law, y: float, v: float) -> None:
-    """Watch free rocking to the rest, or until the block passes alpha for good.
-
-    Parameters
-    ----------
-    limits : ndarray (4,), updated
-    law : Law
-    y, v : float, state at the end of the motion [rad, rad p]
-    """
+    """Watch free rocking to the rest, or until the block passes alpha for good."""
     if is_lost(law, y, v):
         forget_fall(limits)
         return

@@ -93,7 +93,7 @@ def compiled(function: Callable[Given, Answer], folder: Path | None) -> Callable
     with _compiling, cache_folder(folder):
         _introduce(function)
         njit: Any = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")
-        return njit(function)  # type: ignore[no-any-return]
+        return njit(function)
 
 
 def _introduce(function: Callable[..., Any]) -> None:

@@ -28,14 +28,7 @@ SAME_ROOT = 1e-15
 
 
 def value(a: FloatArray, degree: int, x: float) -> float:
-    """Return sum a[i] x^i.
-
-    Parameters
-    ----------
-    a : ndarray (>= degree + 1,)
-    degree : int, 0 or more
-    x : float
-    """
+    """Return sum a[i] x^i."""
     total = a[degree]
     for i in range(degree - 1, -1, -1):
         total = total * x + a[i]
@@ -43,13 +36,7 @@ def value(a: FloatArray, degree: int, x: float) -> float:
 
 
 def slope(a: FloatArray, degree: int, x: float) -> float:
-    """Return sum i a[i] x^(i-1).
-
-    Parameters
-    ----------
-    a, degree, x
-        As for `value`.
-    """
+    """Return sum i a[i] x^(i-1)."""
     total = degree * a[degree]
     for i in range(degree - 1, 0, -1):
         total = total * x + i * a[i]
@@ -66,15 +53,7 @@ def value_and_slope(a: FloatArray, degree: int, x: float) -> tuple[float, float]
 
 
 def stretch(a: FloatArray, degree: int, h: float, d: FloatArray) -> None:
-    """Write the coefficients of sum a[i] (h x)^i into d[0..degree].
-
-    Parameters
-    ----------
-    a : ndarray (>= degree + 1,), series in time
-    degree : int
-    h : float, length of the step
-    d : ndarray (>= degree + 1,), to be written; it may be `a`
-    """
+    """Write the coefficients of sum a[i] (h x)^i into d[0..degree]."""
     scale = 1.0
     for i in range(degree + 1):
         d[i] = a[i] * scale
@@ -82,14 +61,7 @@ def stretch(a: FloatArray, degree: int, h: float, d: FloatArray) -> None:
 
 
 def trend(d: FloatArray, degree: int, lead: int) -> int:
-    """Return 1 where sum d[i] x^i is sure to rise on (0, 1], -1 where it falls, else 0.
-
-    Parameters
-    ----------
-    d : ndarray (>= degree + 1,)
-    degree : int
-    lead : int, number of the first coefficients that are zero
-    """
+    """Return 1 where sum d[i] x^i is sure to rise on (0, 1], -1 where it falls, else 0."""
     first = max(lead, 1)
     least = most = first * d[first]
     for i in range(first + 1, degree + 1):
@@ -144,15 +116,9 @@ def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
 def bracketed_root(a: FloatArray, degree: int, low: float, high: float, rising: bool) -> float:
     """Return the only root of `a` in [low, high], by Newton's method kept in its bracket.
 
+    There `a` has other signs at both ends, of which it is positive at `high` if it is `rising`.
     It begins where the chord between the two ends is zero, but in the middle where that is at an
     end: another root may be there, on the border of the next interval.
-
-    Parameters
-    ----------
-    a : ndarray (>= degree + 1,)
-    degree : int
-    low, high : float, not less than 0; where `a` has other signs, or is a rounding off zero
-    rising : bool, whether it is positive at high
     """
     first, last = value(a, degree, low) if low > 0.0 else a[0], value(a, degree, high)
     x = low + (high - low) * (first / (first - last)) if first != last else low
@@ -192,15 +158,7 @@ def only_root(a: FloatArray, degree: int, start: float) -> float:
 def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> float:
     """Return the first root of `a` in (start, 1], or 2 when there is none.
 
-    Parameters
-    ----------
-    a : ndarray, shape (>= degree + 1,)
-        Coefficients of sum a[i] x^i.
-    degree : int
-    start : float
-        In [0, 1); a root within SAME_ROOT of it is not found again.
-    pool : ndarray, shape (MAX_DEPTH + 2, >= degree + 1)
-        Workspace.
+    A root within SAME_ROOT of the start is not found again; pool is spare, as is `work` elsewhere.
     """
     if trend(a, degree, 0) != 0:
         return only_root(a, degree, start)
@@ -242,15 +200,6 @@ def highest(
     """Return the maximum of sum d[i] x^i on [0, end] and where it is, if it exceeds `above`.
 
     Else `above` itself, and -1.
-
-    Parameters
-    ----------
-    d : ndarray (>= order + 1,)
-    order : int, degree
-    lead : int, number of the first coefficients that are zero
-    end : float, in (0, 1]
-    above : float
-    work : ndarray (>= MAX_DEPTH + 3, >= order + 1), spare
     """
     bound = d[0]
     for i in range(1, order + 1):

@@ -16,53 +16,26 @@ MOMENT = 1e-12
 
 
 def ground(segments: FloatArray, j: int, tau: float) -> float:
-    """Return the ground acceleration [g] on a segment; zero after the last.
-
-    Parameters
-    ----------
-    segments : ndarray (m, 7)
-    j : int, number of the segment
-    tau : float, time [1/p]
-    """
+    """Return the ground acceleration [g] on a segment; zero after the last."""
     return shaking(segments[j], tau) if j < len(segments) else 0.0
 
 
 def shaking(segment: FloatArray, tau: float) -> float:
-    """Return the ground acceleration [g] on a segment.
-
-    Parameters
-    ----------
-    segment : ndarray (7,)
-    tau : float, time [1/p], on the segment or not
-    """
+    """Return the ground acceleration [g] on a segment."""
     start, _, amplitude, omega, phase, offset, rate = segment
     t = tau - start
     return amplitude * math.sin(omega * t + phase) + offset + rate * t
 
 
 def segment_at(segments: FloatArray, j: int, tau: float) -> int:
-    """Return on which segment a time is; their number after the last.
-
-    Parameters
-    ----------
-    segments : ndarray (m, 7)
-    j : int, from which on it is looked for
-    tau : float, time [1/p]
-    """
+    """Return on which segment a time is; their number after the last."""
     while j < len(segments) and tau >= segments[j][1]:
         j += 1
     return j
 
 
 def strongest_between(segments: FloatArray, j: int, begin: float, end: float) -> float:
-    """Return the largest abs(acceleration) of the ground between two times.
-
-    Parameters
-    ----------
-    segments : ndarray (m, 7), in units of 1/p and g, or in those of `motion.SEGMENT_COLUMNS`
-    j : int, segment of the first time, or one before
-    begin, end : float, times in the unit of the segments
-    """
+    """Return the largest abs(acceleration) between two times, from segment j on, in any units."""
     most = 0.0
     for i in range(j, len(segments)):
         first, last = max(begin, segments[i][0]), min(end, segments[i][1])
@@ -79,15 +52,7 @@ def strongest_between(segments: FloatArray, j: int, begin: float, end: float) ->
 
 
 def acceleration(law: Law, side: float, a: float, y: float) -> float:
-    """Return y'' [rad p^2] by the equation of motion (EQUATIONS.md, "From (1) and (2)").
-
-    Parameters
-    ----------
-    law : Law
-    side : float, s
-    a : float, ground acceleration [g]
-    y : float, rotation [rad]
-    """
+    """Return y'' [rad p^2] by the equation of motion (EQUATIONS.md, "From (1) and (2)")."""
     if law.linear:
         return -law.k * law.k * (law.saddle - y + side * law.factor * a)
     return -(math.sin(law.alpha - y) + side * a * math.cos(law.alpha - y))
@@ -131,23 +96,8 @@ def next_uplift(
 ) -> tuple[int, float, float, int]:
     """Find the next uplift of a block at rest, where abs(a) first exceeds the onset.
 
-    Parameters
-    ----------
-    segments : ndarray (m, 7), ground motion
-    j : int, from which segment on
-    tau : float, since when the block is at rest [1/p]
-    onset : float, [g]
-
-    Returns
-    -------
-    segment : int
-    time : float
-        inf when the block stays at rest.
-    side : float
-        +1 or -1; 0 when the block stays at rest.
-    lead : int
-        Power of time with which the rotation grows: 3 where the ground passes through the onset,
-        2 where it is beyond the onset at once.
+    Returns its segment, time, side, and lead: 3 where the ground passes through the onset, 2 where
+    it is beyond the onset at once. A block that stays at rest has the time inf and the side 0.
     """
     for i in range(j, len(segments)):
         begin = max(tau, segments[i][0])
@@ -166,12 +116,6 @@ def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
 
     The excursions last 2 v/r with the restoring accelerations r of the two sides in turn, and
     each impact multiplies the velocity by eta: a geometric series.
-
-    Parameters
-    ----------
-    law : Law
-    side, v : float, the side that it turns to, and the rate [rad p] with which it leaves
-    a : float, ground acceleration [g], as if it stayed
     """
     here = -acceleration(law, side, a, 0.0)
     there = -acceleration(law, -side, a, 0.0)
@@ -201,12 +145,7 @@ def comes_to_rest(law: Law, side: float, now: float, later: float, wait: float) 
 def side_after(law: Law, side: float, v: float, now: float, later: float, wait: float) -> float:
     """Return the side of a block that leaves its base at v after an impact; 0 where it rests.
 
-    Parameters
-    ----------
-    law : Law
-    side, v : float, the side that it turns to, and how fast [rad p]
-    now, later : float, ground acceleration [g] at the impact, and `wait` after it
-    wait : float, `time_to_rest` [1/p]
+    The ground accelerates by `now` at the impact, and by `later` after `wait`, the `time_to_rest`.
     """
     if comes_to_rest(law, side, now, later, wait):
         return 0.0
@@ -219,15 +158,7 @@ def side_after(law: Law, side: float, v: float, now: float, later: float, wait: 
 def after_impact(
     law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float
 ) -> tuple[float, float]:
-    """Return `side_after` an impact, and `time_to_rest` [1/p]; the ground moves on as on segment j.
-
-    Parameters
-    ----------
-    law : Law
-    segments : ndarray (m, 7), ground motion
-    j, tau : int, float, segment and time [1/p] of the impact
-    side, v : float, the side that the block turns to, and the rate after the impact [rad p]
-    """
+    """Return `side_after` an impact, and `time_to_rest`; the ground moves on as on segment j."""
     a = ground(segments, j, tau)
     wait = time_to_rest(law, side, v, a)
     later = ground(segments, j, tau + wait) if wait < math.inf else a

@@ -37,16 +37,7 @@ def accuracy(tolerance: float) -> Accuracy:
 
 
 def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: FloatArray) -> None:
-    """Write the series of f, side x ground acceleration [g], into f[0..order].
-
-    Parameters
-    ----------
-    segment : ndarray (7,), the ground motion
-    tau : float, time of the expansion [1/p]
-    side : float, s
-    order : int, degree
-    f : ndarray (>= order + 1,), to be written
-    """
+    """Write the series of f, side x ground acceleration [g], into f[0..order]."""
     start, _, amplitude, omega, phase, offset, slope = segment
     angle = omega * (tau - start) + phase
     f[0] = side * amplitude * math.sin(angle)
@@ -59,18 +50,7 @@ def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: 
 
 
 def expand_exact(law: Law, order: int, work: FloatArray) -> None:
-    """Extend the series of y by the exact equation, y'' = -[sin z + f cos z], z = alpha - y.
-
-    Parameters
-    ----------
-    law : Law
-        Of which alpha is used.
-    order : int
-        Degree of the series.
-    work : ndarray, shape (>= 5, >= order + 1)
-        Series: of y, of which the first three coefficients are known, of side x ground acceleration
-        [g], known, and of sin z and cos z; the last row is spare.
-    """
+    """Extend the series of y by the exact equation, y'' = -[sin z + f cos z], z = alpha - y."""
     y, f, sine, cosine, rate = work[0], work[1], work[2], work[3], work[4]
     sine[0] = math.sin(law.alpha - y[0])
     cosine[0] = math.cos(law.alpha - y[0])
@@ -93,15 +73,7 @@ def expand_exact(law: Law, order: int, work: FloatArray) -> None:
 
 
 def expand_linear(law: Law, order: int, f: FloatArray, y: FloatArray) -> None:
-    """Extend a series by a linear model, y'' = -k^2 [saddle - y + q f].
-
-    Parameters
-    ----------
-    law : Law
-    order : int, degree
-    f : ndarray (>= order - 1,), series of side x ground acceleration [g]
-    y : ndarray (>= order + 1,), of which the first three coefficients are known
-    """
+    """Extend a series by a linear model, y'' = -k^2 [saddle - y + q f]."""
     for i in range(1, order - 1):
         y[i + 2] = law.k * law.k * (y[i] - law.factor * f[i]) * (1.0 / (i + 1)) * (1.0 / (i + 2))
 
@@ -116,11 +88,6 @@ def trusted_step(y: FloatArray, accuracy: Accuracy) -> float:
 
     The last two terms are held below the tolerance times the largest of the first four, which for
     a step out of a rest is the cubic one (after Jorba and Zou 2005, section 3.2).
-
-    Parameters
-    ----------
-    y : ndarray (>= order + 1,), the series
-    accuracy : Accuracy, its degree and tolerance
     """
     order, tolerance = accuracy
     last, before = logarithm(abs(y[order]) / tolerance), logarithm(abs(y[order - 1]) / tolerance)

@@ -20,7 +20,7 @@ from analytic import (
     simulate,
 )
 from analytic.criteria import free_amplitude, quarter_period
-from analytic.frame_forces import frame_demands, frame_faults
+from analytic.frame_forces import frame_demands
 
 SIZES = [(0.5, 1.5), (0.5, 2.0), (1.0, 6.0)]
 SPACING, DEPTH = 3.0, 0.3
@@ -180,26 +180,10 @@ def test_demands_are_the_forces_of_the_rigid_bodies(load):
     assert needs.spacing == pytest.approx(0.5 + np.abs(across / along).max() * DEPTH, rel=1e-4)
 
 
-def test_what_a_frame_does_not_hold_is_named():
-    frame = RockingFrame(width=0.5, height=1.5, load=2.0)
-    usual = {"spacing": 3.0, "depth": 0.3, "friction": 0.5}
-    assert frame_faults(frame, PULSE, **usual) == ()
-    needs = frame_demands(frame, PULSE, spacing=3.0, depth=0.3)
-    (line,) = frame_faults(frame, PULSE, **{**usual, "spacing": 0.6})
-    assert line == f"the beam would tip: L = 0.6 m, needs {needs.spacing:.3g}"
-    feet, beam = frame_faults(frame, PULSE, **{**usual, "friction": 0.3})
-    assert feet == f"the feet would slide: mu = 0.3, needs {needs.base:.3g}"
-    assert beam == f"the beam would slide: mu = 0.3, needs {needs.top:.3g}"
-    fast = (0.0, 9.0)
-    (line,) = frame_faults(frame, Still(), fast, **usual)
-    assert line.startswith("a contact would open: -")
-
-
 def test_a_frame_that_starts_beyond_where_it_balances_asks_for_nothing():
     frame = RockingFrame(width=0.5, height=1.5, load=2.0)
     fallen = {"start": (1.1 * frame.alpha, 0.0), "spacing": 2.0, "depth": 0.2}
     assert frame_demands(frame, Still(), **fallen) == (0.0, 0.0, 1.0, 0.0)
-    assert frame_faults(frame, Still(), **fallen, friction=0.1) == ()
 
 
 def test_a_squat_frame_comes_to_rest_at_its_first_impact():
