@@ -128,11 +128,6 @@ class RigidBlock(Upright):
 def restitution_or(given: float | None, usual: float) -> float:
     """Return a velocity ratio as it is given, or the usual one, 0 if that is negative, for None.
 
-    Parameters
-    ----------
-    given : float, a user's, or None
-    usual : float, that of an ideally inelastic impact
-
     Raises
     ------
     ValueError

@@ -1,4 +1,4 @@
-"""Checks of arguments: each returns the value as a float or raises with one clear line."""
+"""Checks of arguments: each returns a float, or raises ValueError with one clear line."""
 
 import math
 
@@ -10,13 +10,7 @@ MOST_HALF_CYCLES = 10**15
 
 
 def finite(name: str, value: float) -> float:
-    """Return `value` as a float; raise ValueError unless it is a finite number.
-
-    Parameters
-    ----------
-    name : str, of the argument, for the message
-    value : float, or what `float` makes one of
-    """
+    """Return the value of an argument unless it is no finite number."""
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):
@@ -27,13 +21,7 @@ def finite(name: str, value: float) -> float:
 
 
 def positive(name: str, value: float) -> float:
-    """Return `value` as a float; raise ValueError unless it is positive and finite.
-
-    Parameters
-    ----------
-    name, value
-        As for `finite`.
-    """
+    """Return the value of an argument unless it is not positive and finite."""
     number = finite(name, value)
     if number <= 0.0:
         raise ValueError(f"{name} is {value!r}; it must be positive")
@@ -41,26 +29,13 @@ def positive(name: str, value: float) -> float:
 
 
 def measurable(name: str, value: float) -> float:
-    """Return `value` as a float; raise ValueError unless it is positive, from LEAST to MOST.
-
-    Parameters
-    ----------
-    name, value
-        As for `finite`.
-    """
+    """Return the value of an argument unless it is not positive, from LEAST to MOST."""
     positive(name, value)
     return within(name, value, LEAST, MOST)
 
 
 def within(name: str, value: float, least: float, most: float) -> float:
-    """Return `value` as a float; raise ValueError unless it is a number from `least` to `most`.
-
-    Parameters
-    ----------
-    name, value
-        As for `finite`.
-    least, most : float
-    """
+    """Return the value of an argument unless it is not in a range."""
     number = finite(name, value)
     if not least <= number <= most:
         raise ValueError(f"{name} is {value!r}; it must be from {least:g} to {most:g}")
@@ -68,14 +43,7 @@ def within(name: str, value: float, least: float, most: float) -> float:
 
 
 def sized(name: str, value: float, least: float = LEAST) -> float:
-    """Return `value` as a float; raise ValueError unless it is 0, or of a size `least` to MOST.
-
-    Parameters
-    ----------
-    name, value
-        As for `finite`.
-    least : float, optional
-    """
+    """Return the value of an argument unless it is not 0, nor of a size from the least to MOST."""
     number = finite(name, value)
     if number != 0.0 and not least <= abs(number) <= MOST:
         raise ValueError(f"{name} is {value!r}; it must be 0, or of a size {least:.3g} to {MOST:g}")
@@ -83,14 +51,7 @@ def sized(name: str, value: float, least: float = LEAST) -> float:
 
 
 def whole(name: str, value: float, most: int) -> int:
-    """Return `value` as an int; raise ValueError unless it is a whole number from 1 to `most`.
-
-    Parameters
-    ----------
-    name, value
-        As for `finite`.
-    most : int
-    """
+    """Return the value of an argument unless it is no whole number from 1 to the most."""
     number = positive(name, value)
     if number > most or number != int(number):
         raise ValueError(f"{name} is {value!r}; it must be a whole number from 1 to {most:g}")
@@ -98,13 +59,6 @@ def whole(name: str, value: float, most: int) -> int:
 
 
 def finite_result(what: str, value: float, cause: str) -> None:
-    """Raise ValueError unless a value that follows from arguments is finite.
-
-    Parameters
-    ----------
-    what : str, name of the value
-    value : float
-    cause : str, the arguments that it follows from, with their values
-    """
+    """Refuse arguments, named as their cause, from which something follows that is not finite."""
     if not math.isfinite(value):
         raise ValueError(f"{cause}; {what}, which follows as {value!r}, must be finite")

@@ -42,17 +42,8 @@ class Conditioning(NamedTuple):
     restitution: FloatArray
 
 
-def condition_numbers(
-    alpha: ArrayLike,
-    amplitude_g: ArrayLike,
-    omega_over_p: ArrayLike,
-    half_cycles: ArrayLike,
-    model: str | Model = "exact",
-    restitution: ArrayLike | None = None,
-) -> Conditioning:
-    """Return the condition numbers of the peaks that `peak_ratios` returns.
-
-    Parameters and errors are those of `peak_ratios`; the arrays have the broadcast shape.
+def condition_numbers(*cases: Any, **options: Any) -> Conditioning:
+    """Return the condition numbers of the peaks that `peak_ratios` returns, given the same.
 
     Examples
     --------
@@ -60,29 +51,15 @@ def condition_numbers(
     >>> kappa.round(3)
     array([26.363,    nan])
     """
-    cases = (alpha, amplitude_g, omega_over_p, half_cycles, model, restitution)
-    return Conditioning(*_slopes(_many(*cases)))
+    return Conditioning(*_slopes(_many(*cases, **options)))
 
 
 def conditioning(
-    block: Rocker,
-    motion: Motion,
-    model: str | Model = "exact",
-    start: tuple[float, float] = REST,
+    block: Rocker, motion: Motion, model: str | Model = "exact", start: tuple[float, float] = REST
 ) -> tuple[float, float]:
-    """Return the condition numbers of one peak: by the logarithms of the motion's scale and eta.
+    """Return both condition numbers of one peak, nan where the block does not rock and survive.
 
-    See EQUATIONS.md, "Condition numbers".
-
-    Parameters
-    ----------
-    block, motion, model, start
-        As for `simulate`, with its errors; the start is the same for all scales.
-
-    Returns
-    -------
-    by_amplitude, by_eta : float
-        nan where the block does not rock and survive.
+    The arguments, and their errors, are those of `simulate`; the start is the same for all scales.
 
     Examples
     --------
@@ -95,38 +72,26 @@ def conditioning(
     return float(by_amplitude), float(by_eta)
 
 
-def sensitivities(
-    alpha: ArrayLike,
-    amplitude_g: ArrayLike,
-    omega_over_p: ArrayLike,
-    half_cycles: ArrayLike,
-    model: str | Model = "exact",
-    restitution: ArrayLike | None = None,
-) -> FloatArray:
-    """Return how far the peaks that `peak_ratios` returns move with small, but finite errors.
-
-    Parameters and errors are those of `peak_ratios`.
+def sensitivities(*cases: Any, **options: Any) -> FloatArray:
+    """Return how far the peaks that `peak_ratios` returns, given the same, move with finite errors.
 
     Returns
     -------
     ndarray
-        The largest abs(peak/peak_0 - 1)/abs(move) in the broadcast shape, over the `MOVES` of a_p
-        and of eta, which stays at most 1; inf where a move changes the outcome, 0 where the block
-        overturns or stays at rest with all of them, nan where a solution fails.
+        The largest abs(peak/peak_0 - 1)/abs(move), over the `MOVES` of a_p and of eta, which stays
+        at most 1; inf where a move changes the outcome, 0 where the block overturns or stays at
+        rest with all of them, nan where a solution fails.
 
     Examples
     --------
     >>> sensitivities(0.32, [0.4, 0.5], 2.0, 2).round(2)
     array([26.39,  0.  ])
     """
-    return _largest_move(_many(alpha, amplitude_g, omega_over_p, half_cycles, model, restitution))
+    return _largest_move(_many(*cases, **options))
 
 
 def sensitivity(
-    block: Rocker,
-    motion: Motion,
-    model: str | Model = "exact",
-    start: tuple[float, float] = REST,
+    block: Rocker, motion: Motion, model: str | Model = "exact", start: tuple[float, float] = REST
 ) -> float:
     """Return what `sensitivities` does, of one peak; the arguments are those of `conditioning`.
 
@@ -141,23 +106,12 @@ def sensitivity(
 
 
 def scaled(
-    block: Rocker,
-    motion: Motion,
-    model: str | Model = "exact",
-    start: tuple[float, float] = REST,
+    block: Rocker, motion: Motion, model: str | Model = "exact", start: tuple[float, float] = REST
 ) -> Callable[[float, float], tuple[float, Outcome]]:
     """Return what solves one response with its motion and eta multiplied.
 
-    Parameters
-    ----------
-    block, motion, model, start
-        As for `simulate`, with its errors; the start is the same for all scales.
-
-    Returns
-    -------
-    callable
-        Given both factors, it returns the largest rotation [rad] and the outcome; eta stays at most
-        1. It writes nothing else down and may be called from several threads.
+    Given both factors, it returns the largest rotation [rad] and the outcome; eta stays at most 1.
+    It writes nothing else down and may be called from several threads.
     """
     posed = pose(block, motion, model, start)
     moving = posed.then_still(posed.segments[-1, 1])
@@ -181,8 +135,8 @@ def _many(
     amplitude_g: ArrayLike,
     omega_over_p: ArrayLike,
     half_cycles: ArrayLike,
-    model: str | Model,
-    restitution: ArrayLike | None,
+    model: str | Model = "exact",
+    restitution: ArrayLike | None = None,
 ) -> Solve:
     eta = housner_restitutions(alpha) if restitution is None else np.asarray(restitution, float)
 

@@ -19,12 +19,6 @@ def quarter_period(block: Rocker, theta: float, model: str = "exact") -> float:
     Linear models: acosh(c/(c - theta))/k, the exact one by elliptic integrals (Housner 1963 gives
     the first; Yim, Chopra and Penzien 1980 the second in another form).
 
-    Parameters
-    ----------
-    block : RigidBlock or RockingFrame
-    theta : float, where it is released [rad]
-    model : str, optional, a name of `analytic.models.MODELS`
-
     Raises
     ------
     ValueError
@@ -48,12 +42,6 @@ def free_amplitude(block: Rocker, theta: float, impacts: int) -> float:
 
     The exact model's energy: cos(alpha - theta_n) = cos alpha + eta^2n [cos(alpha - theta) - cos
     alpha], in a form that keeps the digits of small rotations.
-
-    Parameters
-    ----------
-    block : RigidBlock or RockingFrame
-    theta : float, where it is released at rest [rad], from 0 to alpha
-    impacts : int, n
     """
     theta = finite("theta", theta)
     lift = 2.0 * math.sin(block.alpha - 0.5 * theta) * math.sin(0.5 * theta)
@@ -68,11 +56,6 @@ def frictionless_fall(block: RigidBlock, theta: float) -> tuple[float, float]:
     It is released on one corner, which slides: the centre of mass falls straight down. With
     z = R cos(alpha - theta) its height, energy gives theta'^2 (B^2 + H^2)/12 + z'^2 = 2 g (z0 - z),
     and the time is a quadrature, substituted so that the release is regular.
-
-    Parameters
-    ----------
-    block : RigidBlock
-    theta : float, where it is released at rest [rad]
 
     Raises
     ------
@@ -106,11 +89,6 @@ def overturning_amplitude(omega_over_p: float, half_cycles: int = 1) -> float:
     Half-sine: (omega/p) sin psi - cos psi = exp(-(p/omega)(pi - psi)); full-sine:
     cos psi - (omega/p) sin psi = exp(-(p/omega)(2 pi - psi)); sin psi = onset/amplitude. Housner
     (1963) drops the exponential, which is not on the safe side.
-
-    Parameters
-    ----------
-    omega_over_p : float, of Housner's linearization; of the modified one omega over p'
-    half_cycles : int, optional, 1 or 2
 
     Raises
     ------

@@ -91,11 +91,6 @@ def frame_restitution(alpha: float, load: float) -> float:
     [1 - 3/2 sin(alpha)^2 + 3 gamma cos(2 alpha)]/(1 + 3 gamma); not clipped, as Housner's
     (EQUATIONS.md, "The rocking frame").
 
-    Parameters
-    ----------
-    alpha : float, slenderness of a column [rad]
-    load : float, gamma, the mass of the beam over that of all columns
-
     Examples
     --------
     >>> frame_restitution(0.25, load=0.0) == housner_restitution(0.25)

@@ -74,7 +74,8 @@ class Response:
 
     Attributes
     ----------
-    outcome : Outcome
+    outcome, reason, message
+        What happened; why it failed, without numbers and with them, or what to know about it.
     peak_ratio : float
         Largest abs(theta)/alpha; inf when overturned, 0 at rest or slid, nan when failed.
     crossed : bool
@@ -84,33 +85,21 @@ class Response:
         infinitely many impacts before a rest, those that were resolved.
     uplifts, rests : tuple of float
         Times [s] at which the block leaves its rest, and comes to rest again.
-    slips : tuple of float
+    slips, slip_times : tuple
         Displacements [m] relative to the base, signed, one a slip: from where the rate relative to
-        the base leaves zero to where it vanishes.
-    slip_times : tuple of (float, float)
-        Begin and end [s] of each slip.
-    steps : int
-        Steps of the integrator or engine.
-    wall_s : float
-        Seconds spent on the steps; building a scene and compiling are not included.
-    setup_s : float
-        Seconds spent on what comes before the steps, where that was measured.
-    message : str
-        Why a response failed, or what a reader should know about it.
-    reason : Reason or None
-        Why it failed, without the numbers; None unless it did.
+        the base leaves zero to where it vanishes; and begin and end [s] of each.
+    steps, wall_s, setup_s
+        Steps of the integrator or engine; seconds spent on them, without compiling; and seconds
+        spent before, where that was measured.
     history : History or None
         Present when samples were asked for.
     min_normal, friction_needed : float
         Smallest normal force over weight, and largest abs(horizontal)/normal force, that the
         no-lift-off, no-slip reference needs, of a block that overturns until it passes the critical
         rotation for good; nan where a source does not report them.
-    slip_m : float
-        Largest distance [m] that an engine's contact slid; nan for the reference.
-    sink_m : float
-        Largest depth [m] of an engine's lowest corner in the base; nan for the reference.
-    hop_m : float
-        Largest height [m] of an engine's lowest corner above the base; nan for the reference.
+    slip_m, sink_m, hop_m : float
+        Of an engine: the largest distance [m] that its contact slid, the largest depth of its
+        lowest corner in the base, and the largest height above it.
     observables : mapping
         Name -> value of what else its scene shows: of a frame how far its bodies came apart, ...
     """
@@ -138,12 +127,7 @@ class Response:
 
     @classmethod
     def failure(
-        cls,
-        message: str,
-        *,
-        reason: Reason = Reason.ERROR,
-        steps: int = 0,
-        wall_s: float = 0.0,
+        cls, message: str, *, reason: Reason = Reason.ERROR, steps: int = 0, wall_s: float = 0.0
     ) -> "Response":
         """Make a failed response with its reason."""
         return cls(
