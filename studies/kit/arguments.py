@@ -173,10 +173,7 @@ def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
 
 
 def refuse_given(options: Mapping[str, object], allowed: str) -> None:
-    """Refuse options that say nothing beside the others that were given.
-
-    One that was not given is None, or False; `allowed` ends the refusal: "only without --records".
-    """
+    """Refuse options, given where not None or False, that may be given as `allowed` says."""
     given = [
         f"{_option(name)} is {value}"
         for name, value in options.items()
@@ -197,11 +194,11 @@ def required(words: str, **given: T | None) -> tuple[T, ...]:
 def refuse_both(**given: float | str | None) -> None:
     """Refuse two options of which each says what the other does; None where it is not given."""
     if None not in given.values():
-        shown = [
+        shown = " and ".join(
             f"{_option(name)} is {f'{value:g}' if isinstance(value, float) else value}"
             for name, value in given.items()
-        ]
-        raise BadInputError(f"{' and '.join(shown)}; give one or the other")
+        )
+        raise BadInputError(f"{shown}; give one or the other")
 
 
 def _option(name: str) -> str:

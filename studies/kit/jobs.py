@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
@@ -132,7 +131,4 @@ def answer(job: Job) -> Row:
 
 def unanswered(message: str) -> Row:
     """Return the row of a job that has no response to measure."""
-    return {
-        **{"outcome": "failed", "peak_ratio": math.nan, "impacts": 0, "steps": 0},
-        **{"wall_s": 0.0, "message": brief(message)},
-    }
+    return summary(Response.failure(message))

@@ -18,10 +18,7 @@ DPI, COLOURS = 130, 256
 
 
 def lay_out(drawing: Figure) -> None:
-    """Give the panels of a figure their places for good.
-
-    As long as a figure has a layout to find, matplotlib draws it twice to write it once.
-    """
+    """Give the panels their places for good; else matplotlib draws it twice to write it once."""
     if layout := drawing.get_layout_engine():
         layout.execute(drawing)
         drawing.set_layout_engine(None)

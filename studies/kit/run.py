@@ -148,11 +148,7 @@ def run(
     store: Store | None = None,
     also: Sequence[Path] = (),
 ) -> list[Row]:
-    """Run the jobs that a store has no row of, and return the rows of all in their order.
-
-    The store gets each row as soon as there is one, and takes over those of the folders in `also`;
-    equal jobs share a row.
-    """
+    """Run the jobs that neither a store nor folders in `also` have a row of; return all rows."""
     labels = [labels_of(job) for job in jobs]
     if store is None:
         rows = dict(place(jobs, measure))

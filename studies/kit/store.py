@@ -199,10 +199,7 @@ class Store:
         /,
         **asked: Any,
     ) -> None:
-        """Write tables by their names, and what a reader must know of how they were made.
-
-        That is what made the rows of each source, how many there are, and what was asked.
-        """
+        """Write tables by their names, and what made them: versions, sources, what was asked."""
         for name, table in tables.items():
             write_table(self.folder / f"{name}.csv", with_head(table, self.study, name))
         before = provenance_of(self.folder)
@@ -283,10 +280,7 @@ def project_version() -> str:
 
 
 def versions(before: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the versions of project, Python, engines and packages.
-
-    An engine that is no longer installed has the version that `before`, a provenance, names.
-    """
+    """Return the versions of all that computes; of an absent engine the one that `before` names."""
     engines = {name: version_of(name) for one in ENGINES.values() for name in one.packages}
     known = before.get("engines", {})
     engines |= {name: known[name] for name in known if engines.get(name) == NOT_INSTALLED}
@@ -357,10 +351,7 @@ def whole_runs(record: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def check(folder: Path, names: Iterable[str], option: str) -> None:
-    """Refuse tables of a folder that are not what a study wrote; a missing one is passed over.
-
-    Each may lie in a folder inside, beside its provenance; `option` is what names the folder.
-    """
+    """Refuse tables of a folder that are not what a study wrote; a missing one is passed over."""
     for name in names:
         for path in (folder / name, folder / f"{name}{PACKED}"):
             if os.path.lexists(path) and (problem := _problem(path)):
@@ -372,8 +363,7 @@ def _problem(path: Path) -> str:
         return "must be a file"
     known = provenance_of(path.parent).get("tables", {}).get(path.name.removesuffix(PACKED))
     if known is None:
-        words = f"must be beside the {PROVENANCE} that has its digest"
-        return f"{words}; the command that made it writes one when it is run again"
+        return f"must be beside the {PROVENANCE} that has its digest"
     try:
         same = digest(path) == known
     except (EOFError, OSError):

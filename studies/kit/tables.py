@@ -16,10 +16,7 @@ PACKED = ".gz"
 
 @contextmanager
 def draft(path: Path) -> Iterator[Path]:
-    """Yield where to write a file that takes the place of `path` if the context ends well.
-
-    It lies beside `path`, is empty and of the same suffix, and no link. An OSError names `path`.
-    """
+    """Yield where to write a file that takes the place of `path` if the context ends well."""
     part = path.with_name(f".part.{path.name}")
     try:
         part.unlink(missing_ok=True)
@@ -56,10 +53,7 @@ def with_head(table: pd.DataFrame, study: str, name: str) -> pd.DataFrame:
 
 
 def read_table(path: Path, *words: str) -> pd.DataFrame:
-    """Read a table back as it was written: empty words are such, and numbers may be missing.
-
-    Named are the columns of words that may look like numbers, or like none, besides message.
-    """
+    """Read a table back as it was written; named are its columns of words, besides message."""
     texts = dict.fromkeys(("message", *words), str)
     try:
         heads = [str(name) for name in pd.read_csv(path, nrows=0)]

@@ -38,11 +38,7 @@ class Lost:
 def answers(
     call: Callable[..., Any], tasks: Sequence[tuple[Any, ...]], workers: int, limit_s: float
 ) -> Iterator[tuple[int, Any]]:
-    """Yield the number of each task with what ``call(*task)`` returns, or a `Lost`, as they end.
-
-    It is a function of a module. So many workers are processes side by side; a task may take so
-    long [s], without what its process must load before.
-    """
+    """Yield the number of each task with what ``call(*task)`` returns, or a `Lost`, as they end."""
     waiting, idle, busy = deque(enumerate(tasks)), list[_Worker](), list[_Worker]()
     try:
         while waiting or busy:
