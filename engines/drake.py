@@ -1,0 +1,603 @@
+"""Drake: settings, presets, and how a scene is built, set, stepped and read back.
+
+A discrete plant has its step from its making, and a solver of velocities for it. A continuous one
+is left to the integrator CENIC, which takes steps as it is told, or chooses its own by halving them
+and looking at the difference. Forces are constant through a step of either; the base's motion is
+therefore told as the mean of its acceleration, step by step or look by look. Where the base moves,
+it is a box on a rail whose drive is told where it should be, and how fast.
+"""
+
+import logging
+import math
+from dataclasses import dataclass, replace
+from functools import cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from engines.declaration import (
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    UNMOVED_BASE,
+    Citation,
+    Engine,
+    Factor,
+    Preset,
+    Rule,
+    Stepping,
+    factor,
+    level,
+    moving_base,
+)
+from engines.parts import NO_JAM, floor_half_size, half_size, imported, touching_spheres
+from engines.run.export import Notes, Script
+from engines.run.ground import mean_velocity_of
+from engines.scene import Scene
+from engines.settings import check, disagreement, given, setting
+from engines.world import FloatArray, Moment, Pose, Step
+
+MODULES = (
+    "geometry",
+    "math",
+    "multibody.math",
+    "multibody.plant",
+    "multibody.tree",
+    "systems.analysis",
+    "systems.framework",
+)
+"""Parts of the library that are needed; all of it takes several times as long to import."""
+
+GIVEN_UP = (RuntimeError, SystemExit)
+"""What the library raises; the latter where one of its own conditions does not hold."""
+
+IN_PLANE = (1, 0, 2)
+"""Where x, z and theta stand among the positions of a planar joint; velocities likewise."""
+
+IN_SPACE = (4, 6, 1)
+"""Where x and z stand among the positions of a free body, which begin with a quaternion, and the
+rate among its velocities."""
+
+BACKWARDS = -1.0
+"""CENIC of 1.51.1 lets a drive run at its desired velocity with the opposite sign."""
+
+WITHIN = 8
+"""In so many parts of a look the base is told how fast it is, where steps are the engine's own."""
+
+CENIC = "cenic"
+"""The integrator of a continuous plant; the other solvers are those of a discrete one."""
+
+SOLVERS = ("lagged", "similar", "sap", CENIC)
+"""The library's models of contact, by its own names."""
+
+PLANE = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+"""Its columns are z, x and y: a planar joint moves along two axes, and turns about the third."""
+
+LONGEST = 10.0
+"""No step that CENIC is told is longer than this many ordinary ones."""
+
+GAINS = {"p": 1e12, "d": 1e8}
+"""Of the drive of a base that moves [N/m, N s/m]: nothing yields, and the ratio is an example's."""
+
+SPEED_GAINS = {"p": 0.0, "d": 1e12}
+"""The same where steps differ: how fast the base is does not depend on them, where it is does."""
+
+ACCURACY = 2e-9
+"""Error of a step over alpha. CENIC is of first order: its steps go by the root of this, and so at
+first does a rotation's error in units of kappa: up to 5e-5 at 1e-8, 3e-5 at 2e-9. There it stays
+with half of that, too, whatever the contact is made of; near overturning kappa is 70."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrakeSettings:
+    """Settings of Drake, by default its own; None leaves a setting to the library.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", of which the library sees one contact, the deepest, or "corners": small spheres where
+        the corners at the base are.
+    planar : bool
+        Give the block a planar joint, and two corners in the middle plane instead of four at the
+        edges.
+    friction : float
+        Coefficient between block and base.
+    solver : str or None
+        One of `SOLVERS`; by default "lagged".
+    stiffness : float or None
+        Of a contact over m/dt^2, dt being the step, or the time between two looks at an engine that
+        chooses its own steps; the library's own is 1e6 N/m, whatever the mass.
+    relaxation : float or None
+        Time in which "sap" lets a contact relax, over the step.
+    dissipation : float or None
+        Of the other solvers, over 1/(p R), the time over which a contact's speed is reckoned.
+    stiction : float or None
+        Speed over p R at which a contact that sticks may slip.
+    near_rigid : float or None
+        Of "sap": below which part of what a contact's mass alone would give its stiffness is held.
+    corner_radius : float
+        Radius of the corner spheres over the width.
+    accuracy : float or None
+        Of "cenic": the error of a step over alpha, by which it chooses its own; without it, it
+        takes those that it is told.
+    floor : str
+        How a base that moves is moved: by the "drive" of its joint, or by "position" alone.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    planar: bool = False
+    friction: float = setting(1.0, least=0.0)
+    solver: str | None = setting(names=SOLVERS)
+    stiffness: float | None = setting(above=0.0)
+    relaxation: float | None = setting(least=0.0)
+    dissipation: float | None = setting(least=0.0)
+    stiction: float | None = setting(above=0.0)
+    near_rigid: float | None = setting(least=0.0)
+    corner_radius: float = setting(1e-6, above=0.0)
+    accuracy: float | None = setting(above=0.0, most=1.0)
+    floor: str = setting("drive", names=("drive", "position"))
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+class DrakeWorld:
+    """Bodies on a half-space that does not move, or on a box on a rail."""
+
+    def __init__(
+        self, scene: Scene, settings: DrakeSettings, dt_s: float, library: Any = None
+    ) -> None:
+        self._drake: Any = imported_parts() if library is None else library
+        self._s, self._dt, self._continuous = settings, dt_s, settings.solver == CENIC
+        self._count, self._time, self._place, self._problem = 0, 0.0, 0.0, ""
+        self._gravity, self._moving = scene.system.gravity, scene.frame == "world"
+        self._velocity_of = mean_velocity_of(scene.motion.segments())
+        self._radius = settings.corner_radius * scene.system.width
+        builder = self._drake.DiagramBuilder()
+        self.plant, self.graph = self._new_plant(scene, builder)
+        self.properties = self._new_contact(scene)
+        self.ground, self._here = self.plant.world_body(), self._drake.RigidTransform()
+        self.blocks = self._drake.default_model_instance()
+        self.floor: Any = None
+        self.rail: Any = None
+        if self._moving:
+            self.floor, self.rail = self._new_floor(scene)
+        else:
+            self._add_shape(self.ground, self._here, self._drake.HalfSpace(), "base")
+        turned = None
+        if settings.planar:
+            turned = self._drake.RigidTransform(self._drake.RotationMatrix([*map(list, PLANE)]))
+        self.bodies = [self._new_body(scene, number, turned) for number in range(len(scene.bodies))]
+        self.plant.Finalize()
+        self.simulator = self._drake.Simulator(builder.Build())
+        root = self.simulator.get_mutable_context()
+        self.context = self.plant.GetMyMutableContextFromRoot(root)
+        self._begin(scene)
+        if self._continuous:
+            self._integrator = self._new_integrator(scene)
+        self.simulator.Initialize()
+        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
+        if library is None:
+            self._field = self.plant.mutable_gravity_field()
+            self._fault = self._read_back(scene)
+        if self._moving:
+            instance = self.floor.model_instance()
+            self.desired, self.lag_m = self.plant.get_desired_state_input_port(instance), 0.0
+
+    def _new_plant(self, scene: Scene, builder: Any) -> Any:
+        s, discrete = self._s, not self._continuous
+        scale = scene.system.p * scene.system.R
+        config = {
+            "time_step": self._dt if discrete else 0.0,
+            "discrete_contact_approximation": s.solver if discrete else None,
+            "stiction_tolerance": None if s.stiction is None else s.stiction * scale,
+            "sap_near_rigid_threshold": s.near_rigid,
+        }
+        made = self._drake.MultibodyPlantConfig(**given(config))
+        return self._drake.AddMultibodyPlant(made, builder)
+
+    def _new_contact(self, scene: Scene) -> Any:
+        """Return properties of a shape, which has half of a contact's stiffness and relaxation."""
+        s, layout = self._s, scene.layout
+        stiff, dissipation = s.stiffness, s.dissipation
+        if stiff is not None:
+            stiff = 2.0 * stiff * layout.carried(layout.contacts[0]) / self._dt**2
+        if dissipation is not None:
+            dissipation = dissipation / (scene.system.p * scene.system.R)
+        properties = self._drake.ProximityProperties()
+        rough = self._drake.CoulombFriction(float(s.friction), float(s.friction))
+        material = given({"point_stiffness": stiff, "dissipation": dissipation})
+        self._drake.AddContactMaterial(properties=properties, friction=rough, **material)
+        if s.relaxation is not None:
+            relaxation = 0.5 * s.relaxation * self._dt
+            properties.AddProperty("material", "relaxation_time", relaxation)
+        return properties
+
+    def _add_shape(self, body: Any, place: Any, shape: Any, name: str) -> None:
+        self.plant.RegisterCollisionGeometry(body, place, shape, name, self.properties)
+
+    def _new_floor(self, scene: Scene) -> Any:
+        """Return a box on a rail, which a drive leads, and its joint."""
+        drake, plant, half = self._drake, self.plant, floor_half_size(scene)
+        size = [2.0 * x for x in half]
+        inertia = drake.SpatialInertia.SolidBoxWithMass(scene.bodies[0].mass, *size)
+        floor = plant.AddRigidBody("floor", plant.AddModelInstance("floor"), inertia)
+        ends = self.ground.body_frame(), floor.body_frame()
+        rail = plant.AddJoint(drake.PrismaticJoint("rail", *ends, [1.0, 0.0, 0.0]))
+        gains = drake.PdControllerGains(**(SPEED_GAINS if self._continuous else GAINS))
+        plant.AddJointActuator("drive", rail).set_controller_gains(gains)
+        below = drake.RigidTransform([0.0, 0.0, -half[2]])
+        self._add_shape(floor, below, drake.Box(*size), "base")
+        return floor, rail
+
+    def _new_body(self, scene: Scene, number: int, turned: Any) -> Any:
+        s, drake, plant, body = self._s, self._drake, self.plant, scene.bodies[number]
+        name, size = f"block{number or ''}", [2.0 * half for half in half_size(body)]
+        inertia = drake.SpatialInertia.SolidBoxWithMass(body.mass, *size)
+        block = plant.AddRigidBody(name, self.blocks, inertia)
+        if s.planar:
+            ends = (("on the base", self.ground), ("in the plane", block))
+            frames = [
+                plant.AddFrame(drake.FixedOffsetFrame(f"{name} {where}", end.body_frame(), turned))
+                for where, end in ends
+            ]
+            plant.AddJoint(drake.PlanarJoint(name, *frames))
+        if s.geometry == "box" or scene.layout.rests(number):
+            self._add_shape(block, self._here, drake.Box(*size), name)
+        if s.geometry == "corners":
+            corners = touching_spheres(scene, number, self._radius, planar=s.planar)
+            for corner, at in enumerate(corners):
+                there, ball = drake.RigidTransform(list(at)), drake.Sphere(self._radius)
+                self._add_shape(block, there, ball, f"{name} corner {corner}")
+        return block
+
+    def _begin(self, scene: Scene) -> None:
+        """Put the bodies where, and as fast, as they begin."""
+        drake, begins = self._drake, [body.at for body in scene.bodies]
+        if self._s.planar:
+            places = [q for at in begins for q in (at.z, at.x, at.theta)]
+            speeds = [v for at in begins for v in (at.velocity_z, at.velocity_x, at.rate)]
+            self.plant.SetPositionsAndVelocities(self.context, self.blocks, places + speeds)
+            return
+        for block, at in zip(self.bodies, begins, strict=True):
+            turn = drake.RotationMatrix.MakeYRotation(at.theta)
+            place = drake.RigidTransform(turn, [at.x, 0.0, at.z])
+            self.plant.SetFreeBodyPose(self.context, block, place)
+            along, spin = [at.velocity_x, 0.0, at.velocity_z], [0.0, at.rate, 0.0]
+            velocity = drake.SpatialVelocity(w=spin, v=along)
+            self.plant.SetFreeBodySpatialVelocity(self.context, block, velocity)
+
+    def _new_integrator(self, scene: Scene) -> Any:
+        """Return what takes the steps of a continuous plant."""
+        # without an estimate of the error each step goes to where it is told
+        told, simulator = self._s.accuracy is None, self.simulator
+        longest = LONGEST * self._dt if told else self._dt
+        self._drake.ResetIntegratorFromFlags(simulator, scheme=CENIC, max_step_size=longest)
+        integrator = simulator.get_mutable_integrator()
+        integrator.set_fixed_step_mode(told)
+        if self._s.accuracy is not None:
+            aim = self._s.accuracy * scene.system.alpha * max(1.0, scene.system.R)
+            integrator.set_target_accuracy(aim)
+        return integrator
+
+    @property
+    def moment(self) -> Moment:
+        """At which moment of a step the velocity of a pose holds."""
+        return Moment.MIDDLE if self._s.accuracy is None else Moment.END
+
+    def step(self, step: Step) -> None:
+        """Advance by a step."""
+        if self._problem:
+            return
+        self._field.set_gravity_vector((step.pull_x, 0.0, step.pull_z))
+        if self._moving:
+            self._drive(step.base_x, step.base_velocity)
+        self._count += 1
+        try:
+            # a discrete plant changes at the beginning of a step: half of one later it has, once
+            end = step.end_s if self._continuous else (self._count - 0.5) * self._dt
+            self.simulator.AdvanceTo(end)
+        except GIVEN_UP as error:
+            self._problem = one_line(error)
+        if self._moving:
+            self._look_back(step.base_x)
+
+    def advance(self, end_s: float) -> int:
+        """Advance to a time [s] in steps of the engine's own."""
+        if self._problem:
+            return 1
+        gained = self._velocity_of(end_s, end_s) - self._velocity_of(self._time, self._time)
+        pull_x = 0.0 if self._moving else -gained / (end_s - self._time)
+        self._field.set_gravity_vector((pull_x, 0.0, -self._gravity))
+        before = self._integrator.get_num_steps_taken()
+        try:
+            if self._moving:
+                for end in np.linspace(self._time, end_s, WITHIN + 1)[1:-1]:
+                    self._carry(float(end))
+                self._carry(end_s)
+            else:
+                self.simulator.AdvanceTo(end_s)
+        except GIVEN_UP as error:
+            self._problem = one_line(error)
+            return 1
+        self._time = end_s
+        return int(self._integrator.get_num_steps_taken() - before)
+
+    def _carry(self, end_s: float) -> None:
+        """Advance to a time [s], the base at its mean velocity."""
+        velocity = self._velocity_of(self._time, end_s)
+        self._place += velocity * (end_s - self._time)
+        self._drive(self._place, velocity)
+        self.simulator.AdvanceTo(end_s)
+        self._look_back(self._place)
+        self._time = end_s
+
+    def _drive(self, place: float, velocity: float) -> None:
+        """Tell the base's drive where it should be [m], and how fast [m/s]."""
+        if self._s.floor == "position":
+            self.rail.set_translation(self.context, place)
+            velocity = 0.0
+        turned = BACKWARDS if self._continuous else 1.0
+        self.desired.FixValue(self.context, [place, turned * velocity])
+
+    def _look_back(self, place: float) -> None:
+        """Take note of how far the base is from where it should be [m]."""
+        self.lag_m = max(self.lag_m, abs(self.rail.get_translation(self.context) - place))
+
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        found = self.plant.GetPositionsAndVelocities(self.context, self.blocks).tolist()
+        count, base_x = len(self._state), 0.0
+        if self._moving:
+            base_x = self.rail.get_translation(self.context)
+        for number, row in enumerate(self._state):
+            if self._s.planar:
+                x, z, theta = (found[3 * number + i] for i in IN_PLANE)
+                row[:] = x - base_x, z, theta, found[3 * (count + number) + IN_PLANE[2]]
+            else:
+                q = found[7 * number : 7 * number + 7]
+                x, z, turning = IN_SPACE
+                rate = found[7 * count + 6 * number + turning]
+                row[:] = q[x] - base_x, q[z], 2.0 * math.atan2(q[2], q[0]), rate
+        return self._state
+
+    def fault(self) -> str:
+        """Say which setting was not taken, or what the library gave up on."""
+        return self._fault or self._problem
+
+    def close(self) -> None:
+        """Release the engine's memory."""
+        self.simulator = None
+
+    def _read_back(self, scene: Scene) -> str:
+        s, plant, (body, *_), block = self._s, self.plant, scene.bodies, self.bodies[0]
+        inspector = self.graph.model_inspector()
+        found = [
+            inspector.GetProximityProperties(shape).GetProperty("material", "coulomb_friction")
+            for shape in plant.GetCollisionGeometriesForBody(block)
+        ]
+        inertia = block.CalcSpatialInertiaInBodyFrame(self.context)
+        turning = inertia.CalcRotationalInertia().get_moments()
+        problem = disagreement(
+            {
+                "mass": (body.mass, block.get_mass(self.context)),
+                "moment": (body.inertia[1], turning[1]),
+                "friction": (s.friction, found[0].static_friction()),
+                "step": (0.0 if self._continuous else self._dt, plant.time_step()),
+            }
+        )
+        if problem or s.solver in (None, CENIC):
+            return problem
+        taken = plant.get_discrete_contact_approximation().name.removeprefix("k").lower()
+        return "" if taken == s.solver else f"solver was set to {s.solver!r} but reads {taken!r}"
+
+
+@cache
+def imported_parts() -> SimpleNamespace:
+    """Import the library; return all names of its parts together."""
+    names: dict[str, Any] = {}
+    for part in MODULES:
+        names |= vars(imported(f"pydrake.{part}"))
+    logging.getLogger("drake").setLevel(logging.ERROR)
+    return SimpleNamespace(**names)
+
+
+def one_line(error: BaseException) -> str:
+    """Return what the library says as one line."""
+    return " ".join(str(error).split())
+
+
+def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
+    """Return a scene as calls of Drake; see `engines.run.export`."""
+    notes, count, planar = Notes(chained=True), len(scene.bodies), settings.planar
+    world = DrakeWorld(scene, settings, dt_s, notes.of(imported_parts(), "drake"))
+    notes.name(
+        plant=world.plant, scene_graph=world.graph, properties=world.properties, ground=world.ground
+    )
+    notes.name(blocks=world.blocks, simulator=world.simulator, context=world.context)
+    notes.name_bodies(world.bodies)
+    moving, continuous = scene.frame == "world", settings.solver == CENIC
+    if moving:
+        notes.name(floor=world.floor, rail=world.rail, desired=world.desired)
+    turned = "-base_velocity])  # CENIC turns it round" if continuous else "base_velocity])"
+    if planar:
+        pose = ("theta = state[3 * number + 2]", f"rate = state[3 * number + {3 * count + 2}]")
+    else:
+        pose = (
+            "theta = 2.0 * math.atan2(state[7 * number + 2], state[7 * number])",
+            f"rate = state[6 * number + {7 * count + 1}]",
+        )
+    along = (IN_PLANE if planar else IN_SPACE)[0]
+    words = ("Config(", "Friction(", "Material(", "AddProperty", "Gains(", "Integrator", "set_")
+    return Script(
+        imports=("import pydrake.all as drake",),
+        settings=notes.quoted(*words),
+        # a discrete plant changes at the beginning of a step: half of one later it has, once
+        build=(*notes.lines(), f"end = {'0.0' if continuous else '-0.5 * DT'}"),
+        step=(
+            "global end",
+            "plant.mutable_gravity_field().set_gravity_vector((pull_x, 0.0, pull_z))",
+            *(f"desired.FixValue(context, [base_x, {turned}",) * moving,
+            "end += DT",
+            "simulator.AdvanceTo(end)",
+        ),
+        pose=("state = plant.GetPositionsAndVelocities(context, blocks)", *pose),
+        place=f"plant.GetPositions(context, blocks)[{along}]"
+        + " - rail.get_translation(context)" * moving,
+    )
+
+
+DOCUMENTED = (
+    Citation("step", "time_step = 0.001", "MultibodyPlantConfig, drake 1.51.1"),
+    Citation(
+        "solver",
+        "discrete_contact_approximation = 'lagged', stiction_tolerance = 0.0001",
+        "MultibodyPlantConfig, drake 1.51.1",
+    ),
+    Citation(
+        "contact",
+        "contact_model = 'hydroelastic_with_fallback', compliance_type = 'undefined', that is "
+        "points; point_stiffness = 1000000, hunt_crossley_dissipation = 50",
+        "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1",
+    ),
+    Citation(
+        "shapes",
+        "the table is a <box> with no properties of contact",
+        "tutorials/authoring_multibody_simulation.ipynb, drake 1.51.1",
+    ),
+    Citation(
+        "friction",
+        "dynamic_friction = static_friction = 0.5, of a pair 2 a b/(a + b); 1.0 is used",
+        "DefaultProximityProperties, drake 1.51.1",
+    ),
+    Citation(
+        "without effect",
+        "penetration_allowance = 0.001, sap_near_rigid_threshold = 1, relaxation_time = 0.1, "
+        "contact_surface_representation = 'polygon'",
+        "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1",
+    ),
+    Citation(
+        "floor",
+        "'infinite PD gains for 1-dof joints': a prismatic joint, set_controller_gains, "
+        "get_desired_state_input_port",
+        "RobotLocomotion/drake issue 20496; MultibodyPlant, 'Using PD controlled actuators', "
+        "drake 1.51.1",
+    ),
+    Citation(
+        "gains",
+        "{1e4, 1} on a rail that carries 0.1 kg; of 'infinite' ones there is no example: 1e8 times "
+        "those are used, and a floor of the block's mass",
+        "examples/multibody/deformable/deformable_torus.cc",
+    ),
+)
+"""What the preset "naive" is documented by."""
+
+RECOMMENDED = (
+    Citation("solver", "similar, where impacts are to be resolved", "DiscreteContactApproximation"),
+    Citation("shapes", "small spheres at the corners", "contact_model_doxygen.h, Point contact"),
+    Citation("contact", "stiffness by the depth under the weight: 1e7 N/m", "the same, Stiffness"),
+)
+"""What it recommends for rigid contact; the stiffness is for 375 kg, and follows the mass."""
+
+TUNED = DrakeSettings(
+    geometry="corners",
+    planar=True,
+    friction=100.0,
+    solver=CENIC,
+    stiffness=1.0,
+    dissipation=1e3,
+    stiction=1e-5,
+)
+
+CONTROLLED = replace(TUNED, stiffness=2.5e3, accuracy=ACCURACY)
+
+LAGGED = "friction goes by the normal force of the last step, which no impact has foreseen"
+DEEPEST = "a box touches a half-space in one point, its deepest"
+
+FACTORS = (
+    Factor(
+        "solver",
+        ("solver", "relaxation", "near_rigid"),
+        (
+            level("SAP, relaxation 10", solver="sap", relaxation=10.0, near_rigid=0.0),
+            level("SAP, relaxation 1", solver="sap", relaxation=1.0, near_rigid=0.0),
+            level("SAP", (DEFAULT,), solver="sap"),
+            level("similar", BOTH, solver="similar"),
+        ),
+    ),
+    factor("stiffness", level("10", stiffness=10.0), level("0.1", stiffness=0.1)),
+    factor(
+        "dissipation", level("100", dissipation=1e2), level("1e4", trap=LAGGED, dissipation=1e4)
+    ),
+    factor("stiction", level("1e-4", stiction=1e-4)),
+    Factor(
+        "geometry",
+        ("geometry", "planar"),
+        (
+            level("4 corners", BOTH, geometry="corners", planar=False),
+            level("planar box", trap=DEEPEST, geometry="box"),
+        ),
+        traps={"fixed": DEEPEST},
+    ),
+    factor("corner_radius", level("B/500", corner_radius=2e-3)),
+    factor("friction", level("1.3", friction=NO_JAM)),
+    moving_base("drive", "position"),
+)
+"""What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Give each contact a `point_stiffness` of m/dt²: its own is 1e6 N/m, whatever the mass",
+        *(BEST, "stiffness", BY_DEFAULT),
+    ),
+    Rule(
+        "Put spheres at the corners: of a box a half-space sees one point, the deepest",
+        *(BEST, "geometry", "planar box"),
+    ),
+    Rule(
+        "Keep `dissipation` below 1e3/(p R): friction goes by the last step's normal force",
+        *(BEST, "dissipation", "1e4"),
+    ),
+    Rule(
+        "Drive a base that moves, `set_controller_gains`: friction does not feel one just placed",
+        *UNMOVED_BASE,
+    ),
+)
+"""What its users should know first."""
+
+NAIVE = Preset(
+    name="naive",
+    settings=DrakeSettings(),
+    step_s=1e-3,
+    documented=DOCUMENTED,
+    frame="world",
+    own={"friction": 0.5},
+)
+
+ENGINE = Engine(
+    name="drake",
+    title="Drake",
+    library="pydrake",
+    packages=("drake",),
+    install="rocking[drake]",
+    build=DrakeWorld,
+    stacks=True,
+    presets=(
+        NAIVE,
+        NAIVE.at_rest(),
+        NAIVE.recommended(*RECOMMENDED, solver="similar", geometry="corners", stiffness=0.0133),
+        Preset(name="fixed", settings=TUNED, step=3e-4),
+        Preset(
+            name="error-controlled",
+            title="steps of its own, by its own estimate of the error",
+            settings=CONTROLLED,
+            stepping=Stepping.OWN,
+            accuracy_knob=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 2e-9)),
+        ),
+    ),
+    script=script,
+    factors=FACTORS,
+    rules=RULES,
+)
