@@ -1,15 +1,13 @@
 """Drake: what its own steps and its soft contact do, and the traps that it sets."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from uses import BLOCK, HERE, agreed, error, rocked, scene
 
 from analytic import simulate
 from analytic.response import Outcome, Reason
+from engines import drake
 from engines.declaration import AT_REST
-from engines.drake import build as drake
 from engines.parts import NO_JAM
 from engines.run.run import LAG, build
 from studies.cases.paper import sweep_cases
@@ -92,16 +90,6 @@ def test_what_the_library_gives_up_on_ends_the_run_and_not_the_process(monkeypat
     assert "\n" not in response.message
 
 
-def test_settings_are_read_back(monkeypatch):
-    whole = drake.values
-
-    def forgetful(*asked):
-        return SimpleNamespace(**{**vars(whole(*asked)), "friction": 0.5})
-
-    monkeypatch.setattr(drake, "values", forgetful)
-    assert rocked("drake", preset="fixed").message == "friction was set to 100.0 but reads 0.5"
-
-
 def test_a_drive_that_yields_is_behind(monkeypatch):
     """An example's own gains, for a gripper of 0.1 kg, are nothing to a block."""
     monkeypatch.setattr(drake, "GAINS", {"p": 1e4, "d": 1.0})
@@ -112,5 +100,5 @@ def test_naive_leaves_the_step_and_the_contact_to_the_library():
     from pydrake.multibody.plant import MultibodyPlantConfig
 
     world = build(HERE["drake"].use(scene(preset="naive")))
-    assert world._plant.time_step() == MultibodyPlantConfig().time_step
-    assert world._plant.get_contact_model().name == "kHydroelasticWithFallback"
+    assert world.plant.time_step() == MultibodyPlantConfig().time_step
+    assert world.plant.get_contact_model().name == "kHydroelasticWithFallback"
