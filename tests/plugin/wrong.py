@@ -1,4 +1,4 @@
-"""The engine of one file with a fault of its own in each class, and two that are none."""
+"""The engine of one file with a fault of its own in each class."""
 
 from my_engine import World
 
