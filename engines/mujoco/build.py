@@ -11,11 +11,8 @@ from xml.etree import ElementTree
 import numpy as np
 
 from engines.mujoco.contact import (
-    DIRECT,
     MOST_GROWTH,
     RELEASED_GROWTH,
-    SCALED,
-    UNSET,
     Arrays,
     ContactState,
     Forces,
@@ -88,8 +85,8 @@ class MujocoSettings:
         bodies that rest on others it is over g dt^2 sin(alpha)^2, and softens the first one, too.
     solref : tuple of float or None
         The contact in the library's other form, in place of damping and stiffness: its time
-        constant over dt and its damping ratio. Both should be positive: the library takes a pair
-        with one zero for its own default, and goes on.
+        constant over the ordinary step and its damping ratio. Both should be positive: the library
+        takes a pair with one zero for its own default, and goes on.
     floor : str
         How a base that moves is moved: by a "weld" to a body that is, by its "surfacevel", or by
         "position" alone.
@@ -169,8 +166,8 @@ class MujocoSettings:
 def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
     """Return the model of a scene in MuJoCo's own language, for steps of dt_s [s].
 
-    Bodies stand upright at rest, wherever they begin; a run sets the step, and the references of
-    contacts that go by it, with each step.
+    Bodies stand upright at rest, wherever they begin. A run sets the step, and contacts that have
+    a damping of ours, with each step.
     """
     options = "".join(f'{k}="{getattr(s, k)}" ' for k in OPTIONS if getattr(s, k) is not None)
     flag = ""
@@ -395,7 +392,6 @@ class MujocoWorld:
             model.pair_solref,
             model.pair_solreffriction,
             model.pair_margin,
-            model.geom_solref,
             model.geom_surfacevel,
             data.mocap_pos,
             np.array(rows).reshape(-1, 8),
@@ -409,7 +405,6 @@ def begin_contact(scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> C
     block, touching = scene.system, len(scene.layout.contacts)
     impedance = 1.0 if s.impedance is None else s.impedance[1]
     sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
-    time_constant, ratio = s.solref or (0.0, 0.0)
     return ContactState(
         planar=s.planar,
         moving=scene.frame == "world",
@@ -422,9 +417,6 @@ def begin_contact(scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> C
         preload=s.preload,
         width=block.width,
         height=0.5 * block.height,
-        form=SCALED if s.solref is not None else UNSET if s.damping is None else DIRECT,
-        time_constant=time_constant,
-        ratio=ratio,
         damping=s.damping or 0.0,
         sliding_damping=sliding,
         sliding=sliding,

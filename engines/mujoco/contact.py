@@ -47,9 +47,6 @@ RELEASED_GROWTH = 80.0
 returned until it grows by no more than this many p dt in a step. Any later, and the time until then
 is one without return, an error of first order."""
 
-UNSET, SCALED, DIRECT = range(3)
-"""Forms of the contact's reference: the library's own, its time constant in steps, b and k."""
-
 FREE, WELDED = 7, 6
 """Coordinates of a free joint, and the solver's rows of a weld, which come before the contacts'."""
 
@@ -76,8 +73,8 @@ class ContactState:
         What changes with the step, as in the settings.
     width, height : float
         Of a body that rocks, the half of the latter [m].
-    form, time_constant, ratio, damping, sliding_damping, stiffness, impedance : int, float
-        Of the reference: `SCALED` has the next two, the first over the step, `DIRECT` the others.
+    damping, sliding_damping, stiffness, impedance : float
+        Of the reference, the first 0 where it stays as the model has it.
     carry : float
         Gap [m] within which the pivot stays in contact; 0 for no such thing.
     touching, pairs, corners : int
@@ -107,9 +104,6 @@ class ContactState:
     preload: bool = False
     width: float = 0.0
     height: float = 0.0
-    form: int = 0
-    time_constant: float = 0.0
-    ratio: float = 0.0
     damping: float = 0.0
     sliding_damping: float = 0.0
     stiffness: float = 0.0
@@ -147,9 +141,9 @@ class Arrays(NamedTuple):
         [rad], and their rates; a free one x, y, z [m] and a quaternion, its real part first, and a
         velocity [m/s] and angular velocity [rad/s].
     gravity : ndarray (3,)
-    pair_reference, pair_friction, pair_margin, geom_reference : ndarray (k, 2), (k,)
-        Two numbers of `solref` along the normal and along the base, and the gap [m] from which on a
-        pair acts; the first for shapes that touch without a pair.
+    pair_reference, pair_friction, pair_margin : ndarray (pairs, 2), (pairs,)
+        The two numbers of `solref` along the normal and along the base, and the gap [m] from which
+        on a pair acts.
     surface_velocity, base_place : ndarray (geoms, 6), (bodies moved, 3)
         Of each shape's surface [m/s, rad/s], first that of the base; where the base is put [m].
     pairs : ndarray (pairs, 8)
@@ -166,7 +160,6 @@ class Arrays(NamedTuple):
     pair_reference: FloatArray
     pair_friction: FloatArray
     pair_margin: FloatArray
-    geom_reference: FloatArray
     surface_velocity: FloatArray
     base_place: FloatArray
     pairs: FloatArray
@@ -209,8 +202,8 @@ def prepare(held: ContactState, arrays: Arrays, step: Step) -> None:
     Written are gravity, references and margins of contacts, the column `RESISTED` of pairs, place
     and velocity of a base that moves.
     """
-    if step.dt_s != held.dt or held.by_phase or held.reflects or held.carry != 0.0:
-        held.dt = step.dt_s
+    changes = step.dt_s != held.dt or held.by_phase or held.reflects or held.carry != 0.0
+    if changes and held.damping != 0.0:
         set_reference(held, arrays, step)
     arrays.gravity[0], arrays.gravity[2] = step.pull_x, step.pull_z
     if held.moving:
@@ -225,12 +218,7 @@ def prepare(held: ContactState, arrays: Arrays, step: Step) -> None:
 
 def set_reference(held: ContactState, arrays: Arrays, step: Step) -> None:
     """Set the contact in units of the step."""
-    dt = step.dt_s
-    if held.form == SCALED:
-        put_pair(arrays.pair_reference, held.time_constant * dt, held.ratio)
-        put_pair(arrays.geom_reference, held.time_constant * dt, held.ratio)
-    if held.form != DIRECT:
-        return
+    held.dt = dt = step.dt_s
     back = part_of(held, step) if held.reflects else 0.0
     firm = held.stiffness
     if held.by_phase and (step.side != 0.0 or step.phase != ContactPhase.REST):

@@ -9,7 +9,8 @@ from declared import run
 from given import BLOCK, all_but_times, pulse
 from uses import rocked, scene
 
-from analytic.block import RigidBlock
+from analytic import RigidBlock, SinePulse
+from analytic.response import Outcome
 from engines import ENGINES
 from engines.pybullet import FACTORS
 from engines.pybullet import build as bullet
@@ -61,13 +62,15 @@ def test_the_solver_ends_by_itself_at_rest():
 
 @pytest.mark.parametrize("wanted", [{"start": (0.5 * BLOCK.alpha, 0.0), "preset": "naive"}, {}])
 def test_nothing_stays_of_any_setting(wanted, monkeypatch):
-    """A run in a client that others have used is that of a new one, to the bit."""
+    """A run in a client that others have used, or in which one failed, is that of a new one."""
     monkeypatch.setattr(bullet, "idle", [])
 
     def answered():
         return all_but_times(rocked("pybullet", pulse(1.35, 4.0), **wanted))
 
     first = answered()
+    lost = rocked("pybullet", SinePulse(amplitude=1e30, omega=1.0), preset="fixed")
+    assert lost.outcome is Outcome.FAILED
     for level in itertools.chain.from_iterable(factor.levels for factor in FACTORS):
         for preset in level.presets:
             few = {"preset": preset, "settings": level.settings, "max_steps": 30}

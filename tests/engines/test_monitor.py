@@ -3,7 +3,6 @@
 import sys
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 from commanding import python
 from given import BLOCK, all_but_times, noise
@@ -14,7 +13,6 @@ from analytic.response import Outcome
 from engines import ENGINES
 from engines.declaration import AT_REST
 from engines.mujoco import loop as mujoco_loop
-from engines.pybullet import build as bullet
 from engines.run import look
 from engines.run.run import LOOK_AROUND, build
 
@@ -132,22 +130,6 @@ def test_a_run_has_room_for_all_that_it_writes_down():
     assert response.outcome is Outcome.ROCKED
     assert response.steps > 4 * LOOK_AROUND
     assert len(response.impacts) > 10
-
-
-@pytest.mark.skipif("pybullet" not in HERE, reason="PyBullet is not installed")
-def test_a_client_that_was_used_is_as_good_as_new(monkeypatch):
-    """Whatever it was used for before, in whichever order, after a failure."""
-    scenes, fresh = SCENES["pybullet"], {}
-    monkeypatch.setattr(bullet, "idle", type(bullet.idle)())
-    for name, options in scenes.items():
-        bullet.idle.clear()
-        fresh[name] = all_but_times(rocked("pybullet", **options))
-    generator = np.random.default_rng(1)
-    for name in generator.choice(list(scenes), 40).tolist():
-        compiled = bool(generator.integers(4))
-        again = rocked("pybullet", compiled=compiled, **scenes[name])
-        assert all_but_times(again) == fresh[name], name
-    assert bullet.idle
 
 
 @pytest.mark.parametrize(("left", "form"), [(1e9, False), (100.0, True), (0.0, True)])

@@ -9,11 +9,10 @@ from declared import run
 
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, installed_engines
-from engines.declaration import BEST, LEFT_OUT, OWN_STEPS, Stepping
+from engines.declaration import BEST, LEFT_OUT, OWN_STEPS
 from engines.mujoco import TUNED
 from engines.mujoco.build import MujocoSettings
 from engines.pybullet.build import BulletSettings, BulletWorld
-from engines.run.look import Monitor
 from engines.run.run import build
 from studies.cases.selection import chosen_cases
 from studies.cases.variants import variants
@@ -74,7 +73,8 @@ def test_a_variant_differs_from_its_preset():
     for variant in VARIANTS:
         plain = ENGINES[variant.engine].preset(variant.preset).settings
         if variant.factor and not variant.scene and variant.factor != OWN_STEPS:
-            assert scene(settings=variant.settings).choose(plain) != plain, variant
+            asked = scene(preset=variant.preset, settings=variant.settings)
+            assert ENGINES[variant.engine].use(asked).settings != plain, variant
 
 
 @pytest.mark.parametrize(
@@ -106,12 +106,9 @@ def test_what_is_not_allowed_is_named(settings, values, message):
 
 def test_solref_and_margin_reach_the_library():
     settings = of("mujoco", BEST, "reference: 2 dt 1").settings
-    asked, dt_s = scene(preset=BEST, settings={**settings, "margin": 1e-3}), 1e-3
-    world = build(ENGINES["mujoco"].use(asked))
-    monitor = Monitor(asked, dt_s, Stepping.FIXED)
-    monitor.make_room(1)
-    world.step(monitor.next(world.state()))
-    assert np.all(world.model.pair_solref == [2.0 * dt_s, 1.0])
+    use = ENGINES["mujoco"].use(scene(preset=BEST, settings={**settings, "margin": 1e-3}))
+    world = build(use)
+    assert np.all(world.model.pair_solref == [2.0 * use.dt_s, 1.0])
     assert world.model.pair_margin == pytest.approx(1e-3 * CASE.block.width)
     world.close()
 
