@@ -117,7 +117,8 @@ def command(
         size = {"width": width, "height": height}
         study = replace(STUDY, name="symptoms" if symptoms else "advise", tabulate=lambda _: tables)
         study.carry_out(out, [], Running(), engines=asked, **size, **how)
-    print("", *details, fill(note, WIDTH), sep="\n\n")
+    print()
+    print(*details, fill(note, WIDTH), sep="\n\n")
     return 0
 
 
@@ -208,7 +209,7 @@ def write(lines: pd.DataFrame, block: RigidBlock, friction: float | None) -> Ite
         preset, value = preset_of(line), float(line["value"])
         here = "" if math.isnan(line["dt_s"]) else f", DT = {line['dt_s']:.6g} s"
         title = f"{ENGINES[line['engine']].title}, {preset.title}"
-        options = {"friction": at, **options_at(preset, value)}
+        options = {"friction": at, "frame": "base", **options_at(preset, value)}
         parts = settings_in_words(line["engine"], preset.name, block, None, **options)
         if helps := "; ".join(each.value for each in preset.helped_by):
             parts += (f"and at every step, by no setting of the library: {helps}",)
