@@ -152,7 +152,7 @@ def test_a_dial_is_no_step(capsys):
     assert run(["advise", "--engine", "drake", "--error", "0.01"]) == 0
     own = 1e-8 * BLOCK.alpha * max(1.0, BLOCK.R)
     text = capsys.readouterr().out
-    assert "accuracy = 1e-08" in text and f"integrator.set_target_accuracy({own!r})" in text
+    assert "accuracy = 1e-08" in text and repr(own) in text
 
 
 def singles(name, engine, column):
