@@ -7,13 +7,13 @@ The library compiles them when they are first used on a machine, for minutes, an
 import math
 
 from engines.declaration import Precision
-from engines.newton.models import build, given_back, numbers, taken, values
+from engines.newton.models import given_back, numbers, prepared, taken, values
 from engines.newton.settings import NewtonSettings
 from engines.parts import imported, silence
-from engines.parts.script import Script, filled, settings_of
+from engines.run.export import Notes
 from engines.scene import Scene
 from engines.settings import disagreement
-from engines.world import Moment, Pose, Step
+from engines.world import Moment, Pose, Script, Step
 
 
 class NewtonWorld:
@@ -85,26 +85,43 @@ class NewtonWorld:
 
 
 def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Newton; see `engines.parts.script`."""
+    """Return a scene as calls of Newton; see `engines.run.export`."""
     if scene.stacked:
         raise ValueError("Newton's bodies that rest on others are not written out")
-    n, at = numbers(scene, settings), scene.bodies[0].at
-    lines = filled(build, n=n, s=values(scene, settings, dt_s))
+    n, at, notes = numbers(scene, settings), scene.bodies[0].at, Notes()
+    newton, warp = (notes.of(imported(name), name) for name in ("newton", "warp"))
+    with silence():
+        made = prepared(newton, warp, n, values(scene, settings, dt_s))
+    names = "model", "solver", "pipeline", "contacts", "now", "after"
+    notes.name(**dict(zip(names, made, strict=True)))
+    led = ("    newton.eval_fk(model, now.joint_q, now.joint_qd, now, body_flag_filter=kinematic)",)
+    half = 0.5 * at.theta
+    place = at.x, 0.0, at.z, 0.0, math.sin(half), 0.0, math.cos(half)
+    views = {"force": "body_f", "place": "body_q", "velocity": "body_qd"}
+    views |= {"joint_q": "joint_q", "joint_qd": "joint_qd"} if n.moving else {}
     return Script(
-        imports=("import newton", "import warp as wp"),
-        settings=settings_of(lines),
+        imports=("import newton", "import warp"),
+        settings=notes.quoted("Solver", "default_shape_cfg.", "config", "rigid_contact_max"),
         build=(
-            *(line.text for line in lines),
+            *notes.lines(),
+            *("kinematic = newton.BodyFlags.KINEMATIC",) * n.moving,
+            *("", "", "def advance():", '    """Take a step."""', *led * n.moving),
+            "    pipeline.collide(now, contacts)",
+            f"    solver.step(now, after, None, contacts, {dt_s!r})",
+            *("    now.assign(after)", "", ""),
+            "advance()  # compiles its kernels",
+            'with warp.ScopedCapture(device="cpu") as recorded:',
+            "    advance()",
+            *(f"{name} = now.{view}.numpy()" for name, view in views.items()),
             "solver.reset(now)",
-            f"half = 0.5 * {at.theta!r}",
-            f"place[0] = ({at.x!r}, 0.0, {at.z!r}, 0.0, math.sin(half), 0.0, math.cos(half))",
-            f"velocity[0] = ({at.velocity_x!r}, 0.0, {at.velocity_z!r}, 0.0, {at.rate!r}, 0.0)",
+            f"place[0] = {place}",
+            f"velocity[0] = {(at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)}",
         ),
         step=(
             f"force[0, 0] = {n.mass!r} * pull_x",
             f"force[0, 2] = {n.mass!r} * (pull_z + GRAVITY)",
             *("joint_q[-1], joint_qd[-1] = base_x, base_velocity",) * n.moving,
-            "wp.capture_launch(recorded.graph)",
+            "warp.capture_launch(recorded.graph)",
         ),
         pose=(
             "theta = 2.0 * math.atan2(float(place[0, 4]), float(place[0, 6]))",

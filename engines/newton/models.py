@@ -100,26 +100,13 @@ def values(scene: Scene, s: NewtonSettings, dt_s: float) -> SimpleNamespace:
     )
 
 
-def build(newton: Any, wp: Any, n: Any, s: Any) -> Any:
-    """Build a block in space, on a plane at rest or a kinematic one, and record a step.
-
-    Parameters
-    ----------
-    newton, wp : module, newton and warp, or what stands in for the first
-    n : SimpleNamespace, from `numbers`
-    s : SimpleNamespace, from `values`
+def prepared(newton: Any, wp: Any, n: Any, s: Any) -> tuple[Any, ...]:
+    """Build a block in space, on a plane at rest or a kinematic one; see `build`.
 
     Returns
     -------
-    model, solver, now, graph
-        The model, its solver, the state that a step advances, and the step that is recorded.
-    force, place, velocity : ndarray (bodies, 6), (bodies, 7), (bodies, 6)
-        Views of the state in single precision, the block first, then a plane that moves: force [N]
-        and moment [N m] that act; position [m] and quaternion, its real part last; velocity [m/s]
-        and angular velocity [rad/s].
-    joint_q, joint_qd : ndarray
-        Views of the joints' coordinates; the last are place [m] and velocity [m/s] of a plane that
-        moves.
+    model, solver, pipeline, contacts, now, after
+        A model, what solves it, what finds contacts and where it leaves them, and two states.
     """
     builder = newton.ModelBuilder(gravity=(0.0, 0.0, n.weight))
     if s.solver != "xpbd":
@@ -166,20 +153,42 @@ def build(newton: Any, wp: Any, n: Any, s: Any) -> Any:
             config.padmm.primal_tolerance = config.padmm.dual_tolerance = s.tolerance
             config.padmm.compl_tolerance = s.tolerance
         solver = kamino(model, config=config)
-    now, after = model.state(), model.state()
+    return model, solver, pipeline, contacts, model.state(), model.state()
+
+
+def build(newton: Any, wp: Any, n: Any, s: Any) -> Any:
+    """Build a block, and record a step.
+
+    Parameters
+    ----------
+    newton, wp : module, newton and warp
+    n : SimpleNamespace, from `numbers`
+    s : SimpleNamespace, from `values`
+
+    Returns
+    -------
+    model, solver, now, graph
+        The model, its solver, the state that a step advances, and the step that is recorded.
+    force, place, velocity : ndarray (bodies, 6), (bodies, 7), (bodies, 6)
+        Views of the state in single precision, the block first, then a plane that moves: force [N]
+        and moment [N m] that act; position [m] and quaternion, its real part last; velocity [m/s]
+        and angular velocity [rad/s].
+    joint_q, joint_qd : ndarray
+        Views of the joints' coordinates; the last are place [m] and velocity [m/s] of a plane that
+        moves.
+    """
+    model, solver, pipeline, contacts, now, after = prepared(newton, wp, n, s)
+    moving = {"body_flag_filter": newton.BodyFlags.KINEMATIC}
 
     def advance() -> None:
+        if n.moving:
+            newton.eval_fk(model, now.joint_q, now.joint_qd, now, **moving)
         pipeline.collide(now, contacts)
         solver.step(now, after, None, contacts, s.dt)
         now.assign(after)
 
-    only = newton.BodyFlags.KINEMATIC
-    if n.moving:
-        newton.eval_fk(model, now.joint_q, now.joint_qd, now, body_flag_filter=only)
     advance()  # compiles its kernels
     with wp.ScopedCapture(device="cpu") as recorded:
-        if n.moving:
-            newton.eval_fk(model, now.joint_q, now.joint_qd, now, body_flag_filter=only)
         advance()
     force = now.body_f.numpy()  # on the CPU a view, as those that follow
     place, velocity = now.body_q.numpy(), now.body_qd.numpy()

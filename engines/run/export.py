@@ -31,6 +31,7 @@ import itertools
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import Enum
 from inspect import isfunction
 from textwrap import wrap
 from typing import Any
@@ -187,7 +188,8 @@ class Notes:
     def called(self, function: "Noted", given: Sequence[Any], named: Mapping[str, Any]) -> Any:
         """Call a function, note it, and return what it returns, noted."""
         it = bare(function)(*map(bare, given), **{key: bare(one) for key, one in named.items()})
-        name = str(function.noted_name).rpartition(".")[2]
+        *_, owner, name = "", *str(function.noted_name).split(".")
+        name = owner if name == "copy" or name.startswith("from_") else name
         kind = LAST.sub("", name).lower()  # sphere of CollisionShapeSphere
         if isinstance(it, np.ndarray) or (isinstance(it, PLAIN[:-1]) and not MAKING.match(name)):
             return it
@@ -222,7 +224,7 @@ class Notes:
 
     def found(self, it: Any, name: str) -> Any:
         """Return a part of something noted: a plain value as it is, or named where it is fixed."""
-        if isinstance(it, PLAIN):
+        if isinstance(it, PLAIN) and not isinstance(it, Enum):
             return constant(it, name) if name.rpartition(".")[2].isupper() else it
         if type(it) in (list, tuple):
             return type(it)(self.found(each, f"{name}[{n}]") for n, each in enumerate(it))
