@@ -4,7 +4,6 @@ import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -24,20 +23,6 @@ that no core is left with much to do when the others are done."""
 MOST_THREADS = 1024
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
-    """Some of the cases, solved.
-
-    where is their slice of all; cases (5, n) are alpha, amplitude, omega/p, half cycles and
-    restitution; constants (5, n) those of `Model.constants`; ends (8, n) the fields of `End`.
-    """
-
-    where: slice
-    cases: FloatArray
-    constants: FloatArray
-    ends: FloatArray
-
-
 def solve_cases(
     given: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike],
     model: str | Model,
@@ -49,8 +34,10 @@ def solve_cases(
 ) -> list[NDArray[Any]]:
     """Solve the cases of `peak_ratios`, which need no more memory than they and the outputs do.
 
-    take is called with each `Part` and the arrays of its outputs, of the types in `outputs`; whole,
-    these are returned in the broadcast shape. Peaks are looked for above a rotation.
+    Of each part take is given the cases (5, n), which are alpha, amplitude, omega/p, half cycles and
+    restitution, the constants (5, n) of `Model.constants`, the fields of `End` (8, n), and an array
+    of each type in `outputs` to write to. Whole, these are returned in the broadcast shape. Peaks
+    are looked for above a rotation.
     """
     declared, eta = find_model(model), 0.0 if restitution is None else restitution
     columns = np.broadcast_arrays(*given, eta)
@@ -70,15 +57,13 @@ def solve_cases(
         solve = PULSES.few(size, steps)
         exactly, pulse = accuracy(TOLERANCE), np.zeros((2, 7))
         ends = solve(declared.linear, exactly, constants, cases, above, pulse, workspace())
-        take(Part(where, cases, constants, ends), *(array[where] for array in written))
+        take(cases, constants, ends, *(array[where] for array in written))
 
-    starts = range(0, size, PART)
-    if len(starts) <= 1:
-        for start in starts:
-            one(start)
+    if size <= PART:
+        one(0)
     else:
         with ThreadPoolExecutor(count) as pool:
-            list(pool.map(one, starts))
+            list(pool.map(one, range(0, size, PART)))
     return [array.reshape(shape) for array in written]
 
 
@@ -116,7 +101,7 @@ def solve_pulses(
     pulse: FloatArray,
     work: FloatArray,
 ) -> FloatArray:
-    """Return the ends of cases; all is as in `Part` or for `march`, pulse (2, 7) is zero."""
+    """Return the ends of cases; all is as in `solve_cases` or `march`, pulse (2, 7) is zero."""
     count = len(cases[0])
     ends = np.empty((8, count))
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
@@ -154,18 +139,15 @@ def peak_ratios(
 ) -> tuple[FloatArray, NDArray[np.object_]]:
     """Solve many responses to sine pulses, on all cores.
 
-    By similarity a case has no more parameters than these.
+    By similarity a case has no more parameters than these, which are broadcast.
 
     Parameters
     ----------
     alpha : array_like
         Slenderness [rad], in (0, pi/2).
-    amplitude_g : array_like
-        Amplitude of the pulse [g].
-    omega_over_p : array_like
-        Circular frequency of the pulse over the frequency parameter of the block.
-    half_cycles : array_like of int
-        Length of the pulse.
+    amplitude_g, omega_over_p, half_cycles : array_like
+        Amplitude of the pulse [g], its circular frequency over the frequency parameter of the
+        block, and its length.
     model : {"exact", "housner", "modified", "onset-matched"}
     restitution : array_like, optional
         Velocity ratio at impacts, in [0, 1]; Housner's value by default.
@@ -175,7 +157,7 @@ def peak_ratios(
     Returns
     -------
     peak_ratio : ndarray
-        Largest abs(theta)/alpha in the broadcast shape; inf when overturned, 0 at rest.
+        Largest abs(theta)/alpha; inf when overturned, 0 at rest.
     outcome : ndarray of Outcome
 
     Raises
@@ -190,9 +172,10 @@ def peak_ratios(
     (array([0.    , 0.0446,    inf]), ['at rest', 'rocked', 'overturned'])
     """
 
-    def take(part: Part, peaks: FloatArray, codes: NDArray[np.int8]) -> None:
-        codes[:] = part.ends[0]
-        peaks[:] = part.ends[1] / part.cases[0]
+    def take(
+        cases: FloatArray, _: FloatArray, ends: FloatArray, peaks: FloatArray, codes: Any
+    ) -> None:
+        codes[:], peaks[:] = ends[0], ends[1] / cases[0]
         peaks[codes == OVERTURNED] = math.inf
         peaks[(codes == TOO_LONG) | (codes == BROKEN)] = math.nan
 

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from analytic.block import RigidBlock, Upright, restitution_or
+from analytic.block import Upright, restitution_or
 from analytic.checks import finite, measurable
 
 MOST_COLUMNS = 100
@@ -68,21 +68,8 @@ class RockingFrame(Upright):
     @property
     def p(self) -> float:
         """Frequency parameter [rad/s]: sqrt(3g/4R (1 + 2 gamma)/(1 + 3 gamma))."""
-        return math.sqrt(0.75 * self.gravity / (self.R * self._growth))
-
-    @property
-    def equivalent(self) -> RigidBlock:
-        """The block whose rotation is that of the columns: (1 + 3 gamma)/(1 + 2 gamma) as large."""
-        return RigidBlock(
-            width=self._growth * self.width,
-            height=self._growth * self.height,
-            gravity=self.gravity,
-            restitution=self.restitution,
-        )
-
-    @property
-    def _growth(self) -> float:
-        return (1.0 + 3.0 * self.load) / (1.0 + 2.0 * self.load)
+        growth = (1.0 + 3.0 * self.load) / (1.0 + 2.0 * self.load)
+        return math.sqrt(0.75 * self.gravity / (self.R * growth))
 
 
 def frame_restitution(alpha: float, load: float) -> float:

@@ -1,11 +1,11 @@
 """Outcomes and modes of many responses to pulses: what an overturning map is made of."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.cases import Part, solve_cases
+from analytic.cases import solve_cases
 from analytic.kernels.excursions import AT_REST, LYING, OVERTURNED
 from analytic.models import Model, find_model
 from analytic.motion import FloatArray
@@ -66,11 +66,12 @@ def overturning_modes(
     linear = find_model(model).linear
 
     def take(
-        part: Part, mode: NDArray[np.int32], margin: FloatArray, steps: NDArray[np.int32]
+        cases: FloatArray, constants: FloatArray, ends: FloatArray, *written: NDArray[Any]
     ) -> None:
-        outcome, _, steps[:], impacts, _, time, y, v = part.ends
-        alpha, _, omega, half_cycles, eta = part.cases
-        k, saddle, *_ = part.constants
+        mode, margin, steps = written
+        outcome, _, steps[:], impacts, _, time, y, v = ends
+        alpha, _, omega, half_cycles, eta = cases
+        k, saddle, *_ = constants
         # as `closed_form.work_to`, and the separatrix v = k (c - y) or v = 2 sin((alpha - y)/2)
         if linear:
             work, excess, barrier = (

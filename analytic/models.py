@@ -34,20 +34,8 @@ def _same(alpha: FloatArray) -> FloatArray:
 class Model:
     """A model of rocking: functions of the slenderness alpha [rad].
 
-    Attributes
-    ----------
-    name : str
-        As used in `simulate` and on the command line.
-    title : str
-        As used in figures.
-    linear : bool
-        Whether the restoring moment is linear in theta; else it is the exact one.
-    saddle : callable
-        The rotation c [rad] of unstable equilibrium; beyond it the free block overturns.
-    frequency : callable
-        k, in units of p.
-    forcing : callable
-        q, the factor on the ground acceleration.
+    Beyond the saddle c [rad] the free block overturns; the frequency k is in units of p, forcing is
+    q. Unless it is linear the restoring moment is the exact one. The title is for figures.
     """
 
     name: str
@@ -65,13 +53,8 @@ class Model:
 
     def constants(self, alpha: FloatArray) -> tuple[FloatArray, ...]:
         """Return k, saddle, factor, alpha and onset of a `Law` at the slenderness alpha [rad]."""
-        return (
-            self.frequency(alpha),
-            self.saddle(alpha),
-            self.forcing(alpha),
-            alpha,
-            self.onset(alpha),
-        )
+        k, saddle, factor = self.frequency(alpha), self.saddle(alpha), self.forcing(alpha)
+        return k, saddle, factor, alpha, self.onset(alpha)
 
     def law(self, alpha: float, eta: float) -> Law:
         """Return the model at one slenderness alpha [rad] and velocity ratio eta."""
@@ -80,9 +63,7 @@ class Model:
 
 
 EXACT = Model(name="exact", title="Exact", linear=False, saddle=_same)
-
 HOUSNER = Model(name="housner", title="Housner linearization", linear=True, saddle=_same)
-
 MODIFIED = Model(
     name="modified",
     title="Modified linearization",
@@ -90,7 +71,6 @@ MODIFIED = Model(
     saddle=np.tan,
     frequency=lambda alpha: np.sqrt(np.cos(alpha)),
 )
-
 ONSET_MATCHED = Model(
     name="onset-matched",
     title="Housner, onset matched",
@@ -103,13 +83,7 @@ MODELS = {model.name: model for model in (EXACT, HOUSNER, MODIFIED, ONSET_MATCHE
 
 
 def find_model(model: str | Model) -> Model:
-    """Return the model of a name, or a model as it is.
-
-    Raises
-    ------
-    ValueError
-        If there is no model of that name; the message lists what there is.
-    """
+    """Return the model of a name, or a model as it is; a ValueError lists what there is."""
     if isinstance(model, Model):
         return model
     if model not in MODELS:

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,7 +23,6 @@ SEGMENT_COLUMNS = ("start", "end", "amplitude", "omega", "phase", "offset", "slo
 """Columns of `Motion.segments`: on [start, end] the ground acceleration is
 amplitude sin(omega (t - start) + phase) + offset + slope (t - start). A row is a sine or a straight
 line: uplifts are found for either, not for their sum."""
-
 
 MOST_PHASE = 1e6
 """Phase of a pulse [rad] up to which floating point holds ten digits of its angle."""
@@ -74,9 +73,8 @@ class SinePulse:
     Raises
     ------
     ValueError
-        If the amplitude is not finite, the phase beyond 1e6, omega not positive and finite, or
-        half_cycles not a positive integer; also if omega is not of a size whose square
-        floating point holds, or the displacement of the ground overflows.
+        If one is out of range, floating point does not hold the square of omega, or the
+        displacement of the ground overflows.
 
     Examples
     --------
@@ -103,18 +101,9 @@ class SinePulse:
         )
 
     @classmethod
-    def in_g(
-        cls,
-        amplitude: float,
-        *,
-        omega: float,
-        half_cycles: int = 1,
-        phase: float = 0.0,
-        gravity: float = GRAVITY,
-    ) -> "SinePulse":
-        """Return the pulse whose amplitude is given in units of `gravity` [m/s2]."""
-        amplitude = finite("amplitude", amplitude) * positive("gravity", gravity)
-        return cls(amplitude=amplitude, omega=omega, half_cycles=half_cycles, phase=phase)
+    def in_g(cls, amplitude: float, *, omega: float, **rest: Any) -> "SinePulse":
+        """Return the pulse whose amplitude is given in units of g."""
+        return cls(amplitude=GRAVITY * finite("amplitude", amplitude), omega=omega, **rest)
 
     @property
     def duration(self) -> float:
@@ -181,19 +170,7 @@ class Still:
 
 @dataclass(frozen=True, slots=True)
 class Delayed:
-    """A motion before which the ground is at rest for a while.
-
-    Parameters
-    ----------
-    motion : Motion
-        What follows.
-    rest_s : float
-        How long the ground is at rest [s], positive.
-
-    Raises
-    ------
-    ValueError
-        If the time is not positive and finite.
+    """A motion before which the ground is at rest for `rest_s` seconds, more than 0.
 
     Examples
     --------

@@ -29,13 +29,6 @@ def test_restitution_of_the_papers_blocks(aspect, eta):
     assert (housner_restitution(block.alpha) < 0) == (eta == 0)
 
 
-def test_dimensions():
-    block = RigidBlock(width=0.6, height=0.8)
-    assert pytest.approx(0.5) == block.R
-    assert block.alpha == pytest.approx(math.atan(0.75))
-    assert block.p == pytest.approx(math.sqrt(3 * 9.81 / 2))
-
-
 EXTREMES = st.sampled_from([1e-150, 1e-100, 1e-30, 1e-8, 1.0, 1e8, 1e30, 1e100, 1e150])
 
 

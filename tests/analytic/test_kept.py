@@ -7,7 +7,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numba
 import pytest
 from numba.core import caching
 
@@ -120,18 +119,6 @@ def test_a_folder_is_named_by_all_sources(package, tmp_path, monkeypatch):
             file.write("\n# edited")
         names.append(name())
     assert len(set(names)) == 4
-
-
-def test_other_kernels_of_the_user_are_kept_where_they_were():
-    before = numba.config.CACHE_DIR
-
-    def twice(x):
-        return 2.0 * x
-
-    kernel = forms.Kernel(twice)
-    assert kernel.compiled(2.0) == 4.0
-    assert before == numba.config.CACHE_DIR
-    assert kernel._compiled.stats.cache_path.startswith(str(kept.kept_in(forms.SOURCES)))
 
 
 def test_a_kernel_runs_where_the_disk_is_full(monkeypatch):

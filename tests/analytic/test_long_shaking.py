@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from analytic import RigidBlock, SinePulse, simulate
-from analytic.criteria import frictionless_fall
 
 R, W = 0.925, 4.0
 BLOCK = RigidBlock(width=0.18, height=1.0, restitution=R)
@@ -79,13 +78,3 @@ def test_the_solver_settles_on_the_orbit_up_to_its_loss():
     assert speeds == pytest.approx(speeds[0], rel=1e-6)
     gaps, speeds = impact_gaps(1.01 * LOSS)
     assert np.ptp(speeds) > 1e-3 * speeds[0]
-
-
-def test_a_block_without_friction_falls_back_from_nearly_flat():
-    """A low tilt falls with the moment of the weight about the centre: theta'' = -a, steadily."""
-    block = RigidBlock(width=1.0, height=0.5)
-    gyration = (block.width**2 + block.height**2) / 12.0
-    lever = 0.5 * block.width
-    steady = block.gravity * lever / (gyration + lever**2)
-    found = frictionless_fall(block, 1e-6)
-    assert found == pytest.approx((math.sqrt(2e-6 / steady), math.sqrt(2e-6 * steady)), rel=1e-5)

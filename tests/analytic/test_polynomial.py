@@ -84,10 +84,3 @@ def test_value_slope_and_bernstein_form():
     to_bernstein(a, ORDER, b)
     assert b[0] == a[0]
     assert abs(b[-1] - p(1.0)) < 1e-11
-
-
-def test_monotone_polynomials_have_one_root_or_none():
-    rising = (Polynomial([-0.2, 1.0, 0.0, 0.3])).coef
-    (found,) = all_roots(rising)
-    assert abs(Polynomial(rising)(found)) < 1e-16
-    assert all_roots(rising + np.array([0.3, 0, 0, 0])) == []

@@ -19,14 +19,11 @@ from analytic import (
     integrate,
     overturning_modes,
     peak_ratios,
-    sensitivities,
     simulate,
 )
 from analytic.criteria import (
-    free_amplitude,
     frictionless_fall,
     overturning_amplitude,
-    quarter_period,
 )
 from engines import Scene
 from studies import respond
@@ -171,42 +168,12 @@ def test_bad_starts_are_refused_everywhere_in_the_same_words(ask, start, named):
         refuses(partial(ask, **{body: BLOCK}, motion=motion, start=start), named)
 
 
-@pytest.mark.parametrize("start", [(0.0, 1e-310), (0.0, 1e300), (1e300, 0.0)])
-def test_a_slide_whose_start_floating_point_does_not_square_is_refused(start):
-    refuses(partial(simulate, BOX, HALF_SINE, start=start), " of the start is ")
-
-
 def test_a_tilt_whose_first_impact_no_step_sees_is_refused():
     """From 1e-100 of alpha the block rocked up to 1.8 of it."""
     still = {"motion": Still(), "duration": 3.0}
     kept = simulate(BLOCK, start=(1e-30 * BLOCK.alpha, 0.0), **still)
     assert kept.peak_ratio == pytest.approx(1e-30, rel=1e-12)
     refuses(partial(simulate, BLOCK, start=(1e-31 * BLOCK.alpha, 0.0), **still), "theta of the")
-
-
-SINGLE = np.float32(0.7)
-"""A number of single precision."""
-
-
-def test_a_number_of_single_precision_makes_nothing_else_single():
-    assert isinstance(RigidBlock(**SIZE, restitution=SINGLE).restitution, float)
-    assert RigidBlock(**SIZE, restitution=None).restitution == BLOCK.restitution
-    frame = RockingFrame(**SIZE, load=1.0, restitution=SINGLE)
-    assert (type(frame.restitution), type(frame.load)) == (float, float)
-    wide = float(SINGLE)
-    pulses = [SinePulse.in_g(number, omega=6.0) for number in (SINGLE, wide)]
-    assert pulses[0].amplitude == pulses[1].amplitude
-    small = np.float32(0.07)
-    for ask in (
-        overturning_amplitude,
-        partial(quarter_period, BLOCK),
-        partial(frictionless_fall, BLOCK),
-        partial(free_amplitude, BLOCK, impacts=2),
-    ):
-        assert ask(small) == ask(float(small))
-    eta = np.array([SINGLE])
-    found = sensitivities(0.32, np.array([0.4], np.float32), 2.0, 2, restitution=eta)
-    assert found == sensitivities(0.32, float(np.float32(0.4)), 2.0, 2, restitution=wide)
 
 
 def test_the_times_of_a_history_are_its_own():
