@@ -34,10 +34,10 @@ def solve_cases(
 ) -> list[NDArray[Any]]:
     """Solve the cases of `peak_ratios`, which need no more memory than they and the outputs do.
 
-    Of each part take is given the cases (5, n), which are alpha, amplitude, omega/p, half cycles and
-    restitution, the constants (5, n) of `Model.constants`, the fields of `End` (8, n), and an array
-    of each type in `outputs` to write to. Whole, these are returned in the broadcast shape. Peaks
-    are looked for above a rotation.
+    Take is given of each part the cases (5, n): alpha, amplitude, omega/p, half cycles, eta;
+    the constants (5, n) of `Model.constants`; the fields of `End` (8, n); and an array of each type
+    in `outputs` to write to. Whole, these are returned in the broadcast shape. Peaks are looked for
+    above a rotation.
     """
     declared, eta = find_model(model), 0.0 if restitution is None else restitution
     columns = np.broadcast_arrays(*given, eta)
