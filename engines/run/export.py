@@ -40,7 +40,7 @@ import numpy as np
 
 from engines.world import Script
 
-PLAIN = (bool, int, float, str, bytes, type(None))
+PLAIN = (bool, int, float, str, type(None))
 MAKING = re.compile("(create|add|load)_?")
 """How functions begin whose number stands for what they made."""
 
@@ -172,14 +172,17 @@ class Notes:
                 alone = argument and (self._chained or text == found[0])
                 made.argument = made.argument and alone
             return text
-        if isinstance(value, dict):
-            pairs = (f"{self.said(key)}: {self.said(it)}" for key, it in value.items())
-            return f"{{{', '.join(pairs)}}}"
         if isinstance(value, list):
             return f"[{', '.join(map(self.said, value))}]"
         if isinstance(value, tuple):
             return f"({', '.join(map(self.said, value))}{',' * (len(value) == 1)})"
-        return plain(value)
+        if isinstance(value, float):
+            return re.sub("(inf|nan)", r"math.\1", repr(float(value)))
+        if isinstance(value, PLAIN):
+            return repr(value)
+        if isfunction(value):
+            return value.__name__  # an adapter's own, which its script defines
+        raise TypeError(f"{value!r} is no value that can be written down")
 
     def write(self, line: str, made: Sequence[int] = ()) -> None:
         """Note a line, and the numbers of what it made."""
@@ -225,7 +228,8 @@ class Notes:
     def found(self, it: Any, name: str) -> Any:
         """Return a part of something noted: a plain value as it is, or named where it is fixed."""
         if isinstance(it, PLAIN) and not isinstance(it, Enum):
-            return constant(it, name) if name.rpartition(".")[2].isupper() else it
+            fixed = name.rpartition(".")[2].isupper() and type(it) in (int, float, str)
+            return constant(it, name) if fixed else it
         if type(it) in (list, tuple):
             return type(it)(self.found(each, f"{name}[{n}]") for n, each in enumerate(it))
         return self._known.get(id(it)) or Noted(self, it, name)
@@ -256,14 +260,6 @@ class Noted:
         # what a call returned leads to an object like one that a call made
         return notes.got(found, text) if isinstance(key, Noted) else notes.found(found, text)
 
-    def __setitem__(self, key: Any, value: Any) -> None:
-        notes = self.noted_notes
-        notes.write(f"{notes.said(self, argument=False)}[{notes.said(key)}] = {notes.said(value)}")
-        self.noted_it[key] = bare(value)
-
-    def __array__(self, *asked: Any, **named: Any) -> Any:
-        return np.asarray(self.noted_it, *asked, **named)
-
     def __call__(self, *given: Any, **named: Any) -> Any:
         return self.noted_notes.called(self, given, named)
 
@@ -275,28 +271,8 @@ class Constant:
 
 
 def constant(value: Any, name: str) -> Any:
-    """Return a plain value, which is written down as `name`."""
-    if isinstance(value, bool | bytes | None):
-        return value
-    kind = type("Constant", (type(value), Constant), {"noted_name": name})
-    return kind(value)
-
-
-def plain(value: Any) -> str:
-    """Return a value that no library made, and that is no collection, as Python."""
-    if isinstance(value, np.ndarray):
-        return f"np.array({value.tolist()!r})"
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float):
-        return re.sub("(inf|nan)", r"math.\1", repr(float(value)))
-    if isinstance(value, PLAIN):
-        return repr(value)
-    if isinstance(value, slice):
-        return ":".join("" if it is None else repr(it) for it in (value.start, value.stop))
-    if isfunction(value):
-        return value.__name__  # an adapter's own, which its script defines
-    raise TypeError(f"{value!r} is no value that can be written down")
+    """Return a number or a word that is written down as `name`."""
+    return type("Constant", (type(value), Constant), {"noted_name": name})(value)
 
 
 def bare(value: Any) -> Any:
@@ -307,8 +283,6 @@ def bare(value: Any) -> Any:
         return type(value).__mro__[1](value)
     if type(value) in (list, tuple):
         return type(value)(map(bare, value))
-    if type(value) is dict:
-        return {key: bare(it) for key, it in value.items()}
     return value
 
 
