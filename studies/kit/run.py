@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from analytic.kernels.compiled import compile_all
-from analytic.kernels.forms import Kernel
+from analytic.kernels.forms import Kernel, compile_all
 from analytic.kernels.kept import are_compiled
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason, Response
