@@ -46,18 +46,8 @@ class Rocker(Protocol):
 class Upright:
     """A homogeneous rectangular block that stands on its base, and what its sizes alone say.
 
-    Parameters
-    ----------
-    width, height : float
-        Full dimensions B and H [m].
-    gravity : float, optional
-        g [m/s2].
-
-    Raises
-    ------
-    ValueError
-        If one is not positive and finite, or it or alpha not of a size whose square floating point
-        holds.
+    B, H [m] and g [m/s2] are positive, and neither they nor alpha of a size whose square floating
+    point does not hold; else there is a ValueError.
     """
 
     width: float

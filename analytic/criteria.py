@@ -4,7 +4,6 @@ They use nothing of the solvers, and so are checks on them.
 """
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 
@@ -95,6 +94,8 @@ def overturning_amplitude(omega_over_p: float, half_cycles: int = 1) -> float:
     ValueError
         If half_cycles is not 1 or 2, or no amplitude below 1e9 onsets overturns the block so.
     """
+    from scipy.optimize import brentq
+
     if half_cycles not in (1, 2):
         raise ValueError(f"half_cycles is {half_cycles!r}; it must be 1 or 2")
     omega_over_p = positive("omega_over_p", omega_over_p)
@@ -105,16 +106,10 @@ def overturning_amplitude(omega_over_p: float, half_cycles: int = 1) -> float:
         wave = omega_over_p * math.sin(psi) - math.cos(psi)
         return sign * wave - math.exp(-(half_cycles * math.pi - psi) / omega_over_p)
 
-    return math.exp(first_root(excess, 1e-12, math.log(1e9)))
-
-
-def first_root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Return a bracketed root to full precision; raise ValueError where there is none."""
-    from scipy.optimize import brentq
-
-    if function(low) * function(high) > 0.0:
-        raise ValueError(f"no root between {low} and {high}")
-    return float(brentq(function, low, high, xtol=1e-15, rtol=1e-15))
+    low, high = 1e-12, math.log(1e9)
+    if excess(low) * excess(high) > 0.0:
+        raise ValueError(f"omega_over_p is {omega_over_p!r}; no amplitude overturns the block so")
+    return math.exp(brentq(excess, low, high, xtol=1e-15, rtol=1e-15))
 
 
 def overturning_velocity(block: RigidBlock) -> float:

@@ -13,7 +13,6 @@ from analytic.kernels.closed_form import free_peak, linear_state
 from analytic.kernels.forces import (
     forget_fall,
     watch_free,
-    watch_rest,
     watch_step,
     watch_to_passing,
     watch_train,
@@ -48,6 +47,7 @@ from analytic.kernels.rest import (
     ground,
     next_uplift,
     segment_at,
+    strongest_between,
 )
 from analytic.kernels.taylor import (
     Accuracy,
@@ -255,7 +255,9 @@ def march(
             j, rise, side, lead = next_uplift(moving, j, tau, law.onset)
             n = sample_rest(notes, min(rise, last), n)
             if watched:
-                watch_rest(notes.limits, moving, resting, tau, rise)
+                # the friction that carries it along
+                strongest = strongest_between(moving, resting, tau, rise)
+                notes.limits[1] = max(notes.limits[1], strongest)
             if side == 0.0:
                 outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
                 return End(outcome, peak, steps, impacts, events, last, 0.0, 0.0)

@@ -14,7 +14,7 @@ import math
 from analytic.kernels.closed_form import is_lost, turning_rotation, work_to
 from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import highest, next_root, value
-from analytic.kernels.rest import acceleration, strongest_between
+from analytic.kernels.rest import acceleration
 
 NOTHING_YET = (1.0, 0.0, 1.0, 0.0)
 """Limits before the first state, of a block at rest on a base at rest."""
@@ -48,11 +48,6 @@ def watch(limits: FloatArray, law: Law, side: float, a: float, y: float, v: floa
     """Watch one state of a block."""
     normal, horizontal = forces(law, side, a, y, v)
     keep(limits, normal, horizontal)
-
-
-def watch_rest(limits: FloatArray, segments: FloatArray, j: int, begin: float, end: float) -> None:
-    """Watch a block at rest between two times: it needs the friction that carries it along."""
-    limits[1] = max(limits[1], strongest_between(segments, j, begin, end))
 
 
 def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -> None:
