@@ -171,7 +171,8 @@ class BulletWorld:
             self.bodies = [self._made(number) for number in range(len(scene.bodies))]
             self._fault = self._set_dynamics()
             if self._constrained:
-                self._hold_base()
+                held = self.base, -1, -1, -1, self._p.JOINT_FIXED, NOWHERE, NOWHERE, self.ground
+                self.holder = self._p.createConstraint(*held, physicsClientId=self._client)
             self._set_out()
         self._state = np.zeros((len(self.bodies), len(Pose._fields)))
 
@@ -282,7 +283,10 @@ class BulletWorld:
 
     def _read_back(self, number: int, wanted: Mapping[str, Any]) -> str:
         s, body = self._s, self._scene.bodies[number]
-        block, base = self._dynamics(self.bodies[number]), self._dynamics(self.base)
+        block, base = (
+            self._own.getDynamicsInfo(each, -1, physicsClientId=self._client)
+            for each in (self.bodies[number], self.base)
+        )
         engine = self._own.getPhysicsEngineParameters(physicsClientId=self._client)
         pairs: dict[str, tuple[Any, Any]] = {
             "mass": (body.mass, block[0]),
@@ -298,23 +302,6 @@ class BulletWorld:
             pairs["contactDamping"] = (wanted.get("contactDamping"), block[8])
             pairs["contactStiffness"] = (wanted.get("contactStiffness"), block[9])
         return disagreement(pairs)
-
-    def _dynamics(self, body: int) -> Any:
-        return self._own.getDynamicsInfo(body, -1, physicsClientId=self._client)
-
-    def _hold_base(self) -> None:
-        """Hold the base where it is, by a constraint that moves it later."""
-        self.holder = self._call(
-            "createConstraint",
-            parentBodyUniqueId=self.base,
-            parentLinkIndex=-1,
-            childBodyUniqueId=-1,
-            childLinkIndex=-1,
-            jointType=self._p.JOINT_FIXED,
-            jointAxis=NOWHERE,
-            parentFramePosition=NOWHERE,
-            childFramePosition=self.ground,
-        )
 
     def _set_out(self) -> None:
         """Take a step far from the base, then let the bodies set out from where the scene begins.
