@@ -12,22 +12,22 @@ class Body:
     def __init__(self, mass, *, shape=None):
         self.mass, self.shape = mass, shape
 
+    def weigh(self):
+        return self.mass
+
 
 class Space:
     BOUNCY = 3
 
     def __init__(self):
-        self.bodies, self.own = [], Body(math.inf)
+        self.own = Body(math.inf)
 
-    def add(self, body):
-        self.bodies.append(body)
+    def put(self, body):
+        self.last = body
 
     def create_part(self, body, sizes):
         body.parts = sizes
         return len(sizes)
-
-    def weigh(self, body):
-        return body.mass
 
     def pair(self):
         return Body(1.0), Body(2.0)
@@ -40,9 +40,9 @@ def build(library):
     space = library.Space()
     space.friction = constant(math.sqrt(0.3), "math.sqrt(0.3)")
     block = library.Body(2.0, shape=library.Body(library.LARGE))
-    block.place = (space.weigh(block), math.inf)
+    block.place = (block.weigh(), math.inf)
     space.own.mass = library.Space.BOUNCY
-    space.add(block)
+    space.put(block)
     number = space.create_part(block, sizes=[1, 2.0])
     left, right = space.pair()
     left.part = (number,)
@@ -60,7 +60,7 @@ def test_a_script_builds_what_was_built_and_reads_as_if_written_by_hand():
         "block = library.Body(2.0, shape=library.Body(library.LARGE))",
         "block.place = (2.0, math.inf)",
         "space.own.mass = library.Space.BOUNCY",
-        "space.add(block)",
+        "space.put(block)",
         "part = space.create_part(block, sizes=[1, 2.0])",
         "box, box_2 = space.pair()",
         "box.part = (part,)",
@@ -79,6 +79,6 @@ def test_what_no_call_made_cannot_be_written_down():
     notes = Notes()
     space = notes.of(LIBRARY, "library").Space()
     with pytest.raises(TypeError, match="no value that can be written down"):
-        space.add(Body(1.0))
+        space.put(Body(1.0))
     with pytest.raises(TypeError, match="was not made by a call"):
         notes.name(own=space.own)
