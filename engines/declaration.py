@@ -54,15 +54,12 @@ class Level:
 
     Attributes
     ----------
-    name : str
-    settings : mapping
-        Settings of the engine.
+    name, trap : str
+        What it is, and why it goes wrong without a word, where it does.
+    settings, scene : mapping
+        Settings of the engine, and options of the scene.
     presets : tuple of str
         From which it is tried.
-    trap : str
-        Why it goes wrong without a word, where it does.
-    scene : mapping
-        Options of the scene.
     """
 
     name: str
@@ -73,15 +70,7 @@ class Level:
 
 
 def level(name: str, presets: tuple[str, ...] = (BEST,), trap: str = "", **settings: Any) -> Level:
-    """Return a value of a factor that is a matter of the engine's settings alone.
-
-    Parameters
-    ----------
-    name, presets, trap
-        As of `Level`.
-    **settings
-        Settings of the engine by name.
-    """
+    """Return a value of a factor that is a matter of the engine's settings alone."""
     return Level(name=name, settings=settings, presets=presets, trap=trap)
 
 
@@ -112,31 +101,16 @@ class Factor:
 
 
 def factor(setting: str, *levels: Level, name: str = "", **options: Any) -> Factor:
-    """Return a factor that is a matter of one setting.
-
-    Parameters
-    ----------
-    setting : str, its name
-    *levels : Level
-    name : str, optional, of the factor; by default the setting's
-    **options
-        by_default and traps of `Factor`.
-    """
+    """Return a factor that is a matter of one setting; with by_default and traps of `Factor`."""
     return Factor(name or setting.replace("_", " "), (setting,), levels, **options)
 
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What a user of a library should do, and the variant of a preset that shows what it is worth.
+    """What a user should do, and the variant (as of a study of contacts) that shows its worth.
 
-    Attributes
-    ----------
-    words : str
-        In the library's own words, as an order.
-    preset, factor, level : str
-        The variant, as a study of contacts calls it.
-    kept : bool
-        Whether it is the variant that keeps the rule, and the preset that does not.
+    words are an order in the library's own words; kept says that the variant keeps the rule, and
+    the preset does not.
     """
 
     words: str
@@ -146,10 +120,7 @@ class Rule:
     kept: bool = False
 
 
-UNMOVED = "a base without a velocity: friction does not feel it"
-
-BY_POSITION = "by position alone"
-MOVING_BASE = "moving base"
+BY_POSITION, MOVING_BASE = "by position alone", "moving base"
 """Name of the factor of how a base that moves is moved, and of the way that no friction feels."""
 
 
@@ -158,11 +129,12 @@ def moving_base(*floors: str) -> Factor:
 
     The first one is that of the tuned presets; "position" is the base moved by position alone.
     """
+    unmoved = "a base without a velocity: friction does not feel it"
     levels = [
         Level(
             name=BY_POSITION if floor == "position" else f"by {floor}",
             settings={"floor": floor},
-            trap=UNMOVED if floor == "position" else "",
+            trap=unmoved if floor == "position" else "",
             scene={"frame": "world"},
         )
         for floor in floors
@@ -173,23 +145,13 @@ def moving_base(*floors: str) -> Factor:
 ASLEEP = Factor(
     "sleeping",
     ("sleeping",),
-    (
-        Level(
-            name="on",
-            settings={"sleeping": True},
-            trap="a block asleep: gravity that turns wakes nothing",
-        ),
-    ),
+    (level("on", trap="a block asleep: gravity that turns wakes nothing", sleeping=True),),
     by_default=False,
 )
 """A block that was put to sleep, which tuned presets forbid (setting `sleeping`)."""
 
-SLEEP = (BEST, ASLEEP.name, ASLEEP.levels[0].name)
-"""What a rule about it is shown by."""
-
-UNMOVED_BASE = (BEST, MOVING_BASE, BY_POSITION)
-"""What a rule about such a base is shown by."""
-
+SLEEP, UNMOVED_BASE = (BEST, "sleeping", "on"), (BEST, MOVING_BASE, BY_POSITION)
+"""What rules about a block asleep, and about a base without a velocity, are shown by."""
 
 Builder = Callable[[Scene, Any, float], World]
 """``(scene, settings, dt_s)`` -> the built scene, in the ordinary steps dt_s [s]."""

@@ -9,12 +9,9 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from typing import Any
 
-from engines.declaration import Engine, Help, Preset, Stepping
-from engines.scene import Scene
-from engines.settings import check, setting
-from engines.world import World
+from engines.declaration import Builder, Engine, Help, Preset, Stepping
+from engines.settings import check, one_of, setting
 
 FURTHER = "ROCKING_ENGINES"
 """Environment variable: engines that no package announces, as "name=module:ENGINE" with blanks
@@ -24,18 +21,13 @@ GROUP = "rocking.engines"
 """Entry points of other packages in this group are engines: name -> "module:ENGINE"."""
 
 OWN = {
-    "pybullet": "engines.pybullet:ENGINE",
-    "mujoco": "engines.mujoco:ENGINE",
-    "pymunk": "engines.pymunk:ENGINE",
-    "box2d": "engines.box2d:ENGINE",
-    "dart": "engines.dart:ENGINE",
-    "rapier": "engines.rapier:ENGINE",
-    "drake": "engines.drake:ENGINE",
-    "newton": "engines.newton:ENGINE",
-    "physx": "engines.physx:ENGINE",
+    name: f"engines.{name}:ENGINE"
+    for name in (
+        *("pybullet", "mujoco", "pymunk", "box2d", "dart"),
+        *("rapier", "drake", "newton", "physx"),
+    )
 }
 """Name of an engine -> where its declaration stands."""
-
 
 elsewhere: Callable[[str], Engine] | None = None
 """Declares an engine of another package where its code must not be loaded in this process."""
@@ -81,20 +73,24 @@ def named(place: str) -> str:
     ----------
     place : str
         "module:ENGINE", a declaration, or "module:build", what builds a world: its engine is then
-        called as its module.
-
-    Raises
-    ------
-    ValueError
-        If neither stands there.
+        called as its module. ValueError if neither stands there.
     """
     if not re.fullmatch(r"[\w.]+:[\w.]+", place):
         raise ValueError(f"engine {place!r} is no place; it must be like my_package.mine:ENGINE")
     module = place.partition(":")[0]
     found = _found(place, EntryPoint(module, place, GROUP))
-    if not isinstance(found, Engine):
-        _refuse_other_than_builder(place, found)
-    return found.name if isinstance(found, Engine) else module.rpartition(".")[2]
+    if isinstance(found, Engine):
+        return found.name
+    if not callable(found) or inspect.isbuiltin(found):
+        raise ValueError(f"engine {place!r} is neither a declaration nor what builds a world")
+    try:
+        inspect.signature(found).bind("scene", "settings", "dt_s")
+    except TypeError:
+        words = f"it takes {inspect.signature(found)}, and what builds a world takes"
+        raise ValueError(f"engine {place!r} is none; {words} (scene, settings, dt_s)") from None
+    except ValueError:
+        pass  # what is compiled may not say what it takes
+    return module.rpartition(".")[2]
 
 
 def announce(place: str, name_of: Callable[[str], str] = named) -> str:
@@ -104,12 +100,8 @@ def announce(place: str, name_of: Callable[[str], str] = named) -> str:
     ----------
     place : str
     name_of : callable, optional
-        As `named`, for a place whose code must not be loaded in this process.
-
-    Raises
-    ------
-    ValueError
-        As `named` does, and if the name is taken.
+        As `named`, for a place whose code must not be loaded in this process. ValueError as it
+        raises one, and if the name is taken.
     """
     name = name_of(place)
     if name in ENGINES:
@@ -117,20 +109,6 @@ def announce(place: str, name_of: Callable[[str], str] = named) -> str:
     os.environ[FURTHER] = " ".join([*os.environ.get(FURTHER, "").split(), f"{name}={place}"])
     _places.cache_clear()
     return ENGINES[name].name
-
-
-def _refuse_other_than_builder(place: str, found: object) -> None:
-    if not callable(found) or inspect.isbuiltin(found):
-        raise ValueError(f"engine {place!r} is neither a declaration nor what builds a world")
-    try:
-        taken = inspect.signature(found)
-    except ValueError:
-        return  # what is compiled may not say what it takes
-    try:
-        taken.bind("scene", "settings", "dt_s")
-    except TypeError:
-        words = f"it takes {taken}, and what builds a world takes (scene, settings, dt_s)"
-        raise ValueError(f"engine {place!r} is none; {words}") from None
 
 
 def _found(name: str, place: EntryPoint) -> object:
@@ -156,13 +134,7 @@ def _declared(name: str, place: EntryPoint) -> Engine:
 
 
 def loaded(name: str) -> Engine:
-    """Return an engine as its code, which is loaded in this process, declares it.
-
-    Raises
-    ------
-    ValueError
-        If what stands at its place is none, or one of another name.
-    """
+    """Return an engine as its code, loaded in this process, declares it; ValueError if none is."""
     place = _places()[name]
     found = _found(name, place)
     if callable(found) and place in _further():
@@ -173,44 +145,21 @@ def loaded(name: str) -> Engine:
 
 
 def core_engines() -> tuple[str, ...]:
-    """Return the names of the engines that the published studies ask by default.
-
-    Examples
-    --------
-    >>> core_engines()
-    ('pybullet', 'mujoco')
-    """
+    """Return the names of the engines that the published studies ask by default."""
     return tuple(name for name, engine in ENGINES.items() if engine.core)
 
 
 def installed_engines() -> tuple[str, ...]:
-    """Return the names of the engines whose libraries are here.
-
-    Examples
-    --------
-    >>> "mujoco" in installed_engines()
-    True
-    """
+    """Return the names of the engines whose libraries are here."""
     return tuple(name for name, engine in ENGINES.items() if engine.installed)
 
 
 def find(name: str | Engine) -> Engine:
-    """Return an engine by its name, or as it is given.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
+    """Return an engine by its name, or as it is given; ValueError if there is none."""
     if isinstance(name, Engine):
         return name
-    if name not in ENGINES:
-        raise ValueError(f"engine is {name!r}; it must be one of {', '.join(ENGINES)}")
+    one_of("engine", name, ENGINES)
     return ENGINES[name]
-
-
-FIXED_STEP = 1e-3
-"""p dt of equal steps."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -223,21 +172,18 @@ class PlainSettings:
         check(self)
 
 
-def undeclared(name: str, build: Callable[[Scene, Any, float], World], library: str) -> Engine:
-    """Return an engine that is used as it is built, with equal steps and with ones that land.
+def undeclared(name: str, build: Builder, library: str) -> Engine:
+    """Return an engine of which nothing is known but what builds its world, in `PlainSettings`.
 
-    Parameters
-    ----------
-    name : str, by which a user asks for it
-    build : callable, ``(scene, settings, dt_s) -> World``, settings being `PlainSettings` and dt_s
-        the ordinary step [s]
-    library : str, the module to import, and what pip is told to install
-
-    Returns
-    -------
-    Engine
-        It holds one body, in the frame "base" alone.
+    It holds one body, in the frame "base" alone, in equal steps and in ones that land.
     """
+    fixed = Preset(name="fixed", title="equal steps", settings=PlainSettings(), step=1e-3)
+    landing = Preset(
+        name="landing",
+        settings=PlainSettings(),
+        stepping=Stepping.LANDING,
+        helped_by={Help.STEPS: None},
+    )
     return Engine(
         name=name,
         title=name,
@@ -245,15 +191,6 @@ def undeclared(name: str, build: Callable[[Scene, Any, float], World], library: 
         packages=(),
         install=library,
         build=build,
-        presets=(
-            Preset(name="fixed", title="equal steps", settings=PlainSettings(), step=FIXED_STEP),
-            Preset(
-                name="landing",
-                title="steps that land on impacts",
-                settings=PlainSettings(),
-                stepping=Stepping.LANDING,
-                helped_by={Help.STEPS: None},
-            ),
-        ),
+        presets=(fixed, landing),
         frames=("base",),
     )
