@@ -30,8 +30,7 @@ from engines.declaration import (
     level,
     moving_base,
 )
-from engines.parts import FLOOR_HEIGHTS, NO_JAM, Counted, fall, imported, iterations_for
-from engines.parts.reflection import returned
+from engines.parts import FLOOR_HEIGHTS, NO_JAM, Counted, fall, imported, iterations_for, returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting

@@ -37,9 +37,9 @@ from engines.parts import (
     floor_half_size,
     half_size,
     imported,
+    returned,
     touching_spheres,
 )
-from engines.parts.reflection import returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import Scene
 from engines.settings import check, disagreement, one_of, setting

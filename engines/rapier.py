@@ -39,9 +39,9 @@ from engines.parts import (
     half_size,
     imported,
     iterations_for,
+    returned,
     touching_spheres,
 )
-from engines.parts.reflection import returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, one_of, setting

@@ -19,7 +19,6 @@ from analytic.slide import SlidingBlock
 from engines.settings import one_of
 
 Start = tuple[float, float]
-"""How a system begins: theta [rad] and theta' [rad/s], or what its own class says."""
 
 BASE = -1
 """Number of the base, where a contact names the body below."""
@@ -27,12 +26,8 @@ BASE = -1
 LOWER, UPPER = -1, 1
 """Faces of a body."""
 
-
-SPACING = 2.0
-"""Distance of a frame's columns, in their heights."""
-
-BEAM_DEPTH = 0.2
-"""Depth of its beam, likewise."""
+SPACING, BEAM_DEPTH = 2.0, 0.2
+"""Distance of a frame's columns and depth of its beam, both in their heights."""
 
 
 class Beginning(NamedTuple):
@@ -143,14 +138,7 @@ System = Rocker | SlidingBlock
 def tilted(width: float, height: float, side: float, theta: float, rate: float) -> Beginning:
     """Return where the centre of a box is, and how fast, that turns about its corner at a side.
 
-    Parameters
-    ----------
-    width, height : float
-        Of the box [m].
-    side : float
-        -1 or 1, the corner that stays on the base; 0 where both do.
-    theta, rate : float
-        Rotation [rad] and angular velocity [rad/s].
+    side is -1 or 1, the corner that stays on the base, or 0 where both do.
     """
     half_width, half_height = 0.5 * side * width, 0.5 * height
     sine, cosine = math.sin(theta), math.cos(theta)
@@ -175,13 +163,7 @@ def _standing(system: Any, density: float, depth: float | None, start: Start, ho
 
 
 def one_block(system: Upright, density: float, depth: float | None, start: Start) -> Layout:
-    """Return one block on the base.
-
-    Parameters
-    ----------
-    system, density, depth, start
-        As for `layout_of`.
-    """
+    """Return one block on the base."""
     block = _standing(system, density, depth, start, 0.0)
     return Layout((block,), (Contact(0, LOWER, BASE),), 1)
 
@@ -190,7 +172,7 @@ def frame(system: RockingFrame, density: float, depth: float | None, start: Star
     """Return columns on the base and a beam on their tops, all of them about x = 0.
 
     The beam moves with the heads of the columns and does not turn (EQUATIONS.md, "The rocking
-    frame"). The parameters are those of `layout_of`.
+    frame").
     """
     count, apart = system.columns, SPACING * system.height
     homes = [(number - 0.5 * (count - 1)) * apart for number in range(count)]
@@ -232,20 +214,10 @@ LAYOUTS: Mapping[type, Callable[[Any, float, float | None, Start], Layout]] = {
 
 
 def layout_of(system: Any, density: float, depth: float | None, start: Start) -> Layout:
-    """Return the layout of a system.
+    """Return the layout of a system of `LAYOUTS`; TypeError if it is of another class.
 
-    Parameters
-    ----------
-    system : RigidBlock, or another of LAYOUTS
-    density : float, [kg/m3]
-    depth : float or None, size out of the plane [m]; None is the width
-    start : (float, float), theta [rad] and theta' [rad/s]; of a box that slides, place [m] and
-        velocity [m/s]
-
-    Raises
-    ------
-    TypeError
-        If no layout is known for its class.
+    density is in kg/m3, depth in m out of the plane (None is the width); start is theta [rad] and
+    theta' [rad/s], and of a box that slides its place [m] and velocity [m/s].
     """
     made = LAYOUTS.get(type(system))
     if made is None:
@@ -305,21 +277,8 @@ class Scene:
     settings : mapping, optional
         Settings of the engine by name that replace those of the preset.
     compiled : bool, optional
-        Step from a compiled loop where the engine has one; else each step from Python. Both give
-        the same response to the bit.
-
-    Raises
-    ------
-    ValueError
-        If a value is not allowed; the message says what is.
-
-    Examples
-    --------
-    >>> from analytic import RigidBlock, SinePulse
-    >>> block = RigidBlock(width=0.5, height=1.5)
-    >>> scene = Scene(system=block, motion=SinePulse.in_g(0.4, omega=6.0))
-    >>> len(scene.bodies), scene.accuracy
-    (1, 'standard')
+        Look at it by compiled code where there is more of it than a few steps; both forms give the
+        same response to the bit.
     """
 
     system: System
@@ -352,11 +311,16 @@ class Scene:
         object.__setattr__(self, "start", self._checked_start(self.start))
         if self.friction is None:
             object.__setattr__(self, "friction", getattr(self.system, "friction", None))
+        elif finite("friction", self.friction) < 0.0:
+            raise ValueError(f"friction is {self.friction!r}; it must not be negative")
         else:
-            object.__setattr__(self, "friction", _not_negative("friction", self.friction))
+            object.__setattr__(self, "friction", finite("friction", self.friction))
         object.__setattr__(self, "max_steps", int(self.max_steps))
         if self.duration is not None:
-            object.__setattr__(self, "duration", self._checked_duration(self.duration))
+            object.__setattr__(self, "duration", finite("duration", self.duration))
+            if self.duration < (least := self.motion.duration):
+                words = f"it must be at least the motion's {least!r}"
+                raise ValueError(f"duration is {self.duration!r}; {words}")
         if self.times is not None:
             object.__setattr__(self, "times", _increasing("times", self.times))
         object.__setattr__(self, "settings", MappingProxyType(dict(self.settings)))
@@ -377,14 +341,6 @@ class Scene:
             words = "it must not be the unstable equilibrium where nothing moves"
             raise ValueError(f"start is {start!r}; {words}")
         return theta, rate
-
-    def _checked_duration(self, value: float) -> float:
-        duration = finite("duration", value)
-        if duration < self.motion.duration:
-            raise ValueError(
-                f"duration is {value!r}; it must be at least the motion's {self.motion.duration!r}"
-            )
-        return duration
 
     @property
     def layout(self) -> Layout:
@@ -412,12 +368,6 @@ class Scene:
 def _moves(motion: Motion) -> bool:
     accelerating = [SEGMENT_COLUMNS.index(name) for name in ("amplitude", "offset", "slope")]
     return bool(motion.segments()[:, accelerating].any())
-
-
-def _not_negative(name: str, value: float) -> float:
-    if finite(name, value) < 0.0:
-        raise ValueError(f"{name} is {value!r}; it must not be negative")
-    return finite(name, value)
 
 
 def _increasing(name: str, values: Sequence[float]) -> tuple[float, ...]:

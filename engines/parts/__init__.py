@@ -1,4 +1,4 @@
-"""What adapters share: shapes of block and base, units of length, silence."""
+"""What adapters share: shapes of block and base, units, a pivot's velocity, silence."""
 
 import contextlib
 import itertools
@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import Any
 
 from engines.scene import LOWER, Body, Scene
+from engines.world import ContactPhase, Step
 
 Point = tuple[float, float, float]
 
@@ -26,27 +27,15 @@ FLOOR_HEIGHTS = 100.0
 
 
 def fall(scene: Scene, dt_s: float) -> float:
-    """Return (alpha p dt)^2 H [m], by which the gap grows in a step dt that opens at a pivot.
-
-    Parameters
-    ----------
-    scene : Scene
-    dt_s : float, dt [s]
-    """
+    """Return (alpha p dt)^2 H [m], by which a gap grows in a step dt [s] that opens at a pivot."""
     return (scene.system.alpha * scene.system.p * dt_s) ** 2 * scene.system.height
 
 
 def iterations_for(scene: Scene, iterations: int | None, sweeps: float | None) -> int | None:
-    """Return how often a solver goes through the contacts; None leaves that to it.
+    """Return how often a solver goes through the contacts: as it is asked, or None for its own.
 
     The impulses of the two corners on which a block stands converge the more slowly, the more
     slender it is: sweeps / sin^2(alpha) iterations, rounded up, serve every block equally well.
-
-    Parameters
-    ----------
-    scene : Scene
-    iterations : int or None, what is asked for, which is returned then
-    sweeps : float or None
     """
     if iterations is not None or sweeps is None:
         return iterations
@@ -61,14 +50,7 @@ def half_size(body: Body) -> Point:
 def corner_spheres(body: Body, radius: float, *, planar: bool, face: int = LOWER) -> list[Point]:
     """Return the centres [m] of spheres at the corners of a body's face, those at -x first.
 
-    They are relative to the body's centre.
-
-    Parameters
-    ----------
-    body : Body
-    radius : float, [m]
-    planar : bool, whether there are two in the middle plane, or four at the edges
-    face : int, optional, LOWER or UPPER
+    They are relative to the body's centre: two in the middle plane (planar), or four at the edges.
     """
     x, y, z = half_size(body)
     depths = (0.0,) if planar else (-y, y)
@@ -76,15 +58,7 @@ def corner_spheres(body: Body, radius: float, *, planar: bool, face: int = LOWER
 
 
 def touching_spheres(scene: Scene, body: int, radius: float, *, planar: bool) -> list[Point]:
-    """Return the centres [m] of spheres at all corners by which a body touches others.
-
-    Parameters
-    ----------
-    scene : Scene
-    body : int, its number
-    radius, planar
-        As for `corner_spheres`.
-    """
+    """Return the `corner_spheres` at all corners by which a body, of a number, touches others."""
     return [
         corner
         for face in scene.layout.faces(body)
@@ -107,15 +81,9 @@ def floor_half_size(scene: Scene) -> Point:
 class Counted:
     """Settings of an engine that need not count lengths in metres from the base.
 
-    In single precision it matters: numbers are told apart by a part of themselves, and a rounding
-    of the pivot's height is a velocity in a short step.
-
-    Attributes
-    ----------
-    units : float or None
-        Units of length in the height of the block; None counts in metres.
-    centred : bool
-        Count heights from where the block's centre is at rest, not from the base.
+    In single precision it matters: a rounding of the pivot's height is a velocity in a short step.
+    units are those of length in the height of the block, None counting in metres; heights are
+    centred that are counted from where the block's centre is at rest.
     """
 
     __slots__ = ()
@@ -133,15 +101,27 @@ class Counted:
 
 
 def counted(lengths: Point, unit: float) -> Point:
-    """Return lengths in an engine's units.
-
-    Parameters
-    ----------
-    lengths : (float, float, float), [m]
-    unit : float, how many units are in a metre
-    """
+    """Return lengths [m] in an engine's units, of which there are so many in a metre."""
     x, y, z = lengths
     return x * unit, y * unit, z * unit
+
+
+MOST_RETURNED = 2.0
+"""A step that is much longer than the one before returns no more than this part of a velocity."""
+
+
+def returned(step: Step, before: float) -> float:
+    """Return the part of a pivot's velocity to give back, so that its mean over a step is zero.
+
+    The centripetal acceleration c of a pivot is in proportion to the square of the angular
+    velocity. A pivot that leaves with -c h/2 is back where it was at the end of a step h. It comes
+    into the next step with c h/2, which it got by the turn of the last one (of `before` [s], 0
+    where there was none), all other velocities having been taken in by the contact. Through an
+    impact, and in the first step after it, nothing is given back.
+    """
+    if not (before and step.side and step.phase in (ContactPhase.SWING, ContactPhase.APPROACH)):
+        return 0.0
+    return min(step.dt_s / before, MOST_RETURNED)
 
 
 @contextlib.contextmanager

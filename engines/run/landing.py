@@ -34,6 +34,12 @@ ratio of rates at an impact is, only the engine says, and the study measures it.
 beforehand is what anybody knows who looks at the block: its size, g, and the base's motion. Where
 an expectation is wrong the steps are merely chosen badly, and the error is that of equal steps.
 
+**When it is not.** Where other bodies of the same world need steps of their own, or steps follow a
+clock, nobody may choose them so: then `fixed` says what to expect. The pivot has to hold: where it
+slides by more than a hundredth of the width, with a friction that a scene asks for, a run fails by
+name (`watch.HOLD_WIDTHS`). And where a block bounces through swings of a few steps, or lies in a
+soft contact, no impact can be foreseen: there landing is worth what equal steps are.
+
 **What else a preset does** must be said beside its figures (`Preset.helped_by`): a contact that
 holds as firmly as each phase needs; the pivot's velocity given back while the block turns about it,
 so that its mean over a step is zero; the pivot kept in contact over the gap by which it rises.
@@ -46,18 +52,13 @@ from engines.run.steps import SAME_TIME, Pace, even
 from engines.scene import Scene
 from engines.world import Choice, ContactPhase, Moment, Pose, Resolution
 
-SWING_PART = 8.0
-"""A swing between impacts is resolved as finely as the time 1/p over this by ordinary steps."""
+SWING_PART, LOAD_PART = 8.0, 4.0
+"""A swing between impacts, and a load, during which the base can lift a block at rest, are resolved
+as finely as the time 1/p over these by ordinary steps."""
 
-LOAD_PART = 4.0
-"""A load, during which the base can lift a block at rest, is resolved as finely as the time 1/p
-over this by ordinary steps."""
-
-COARSEST = 1.0 / 6.0
-"""A swing or a load is taken in steps no longer than this part of it."""
-
-LEAST_LOAD = 0.02
-"""A load is not resolved more finely than by this part of the ordinary step."""
+COARSEST, LEAST_LOAD = 1.0 / 6.0, 0.02
+"""Either is taken in steps no longer than this part of it, and a load in ones no shorter than this
+part of the ordinary step."""
 
 SHORTEST_SWING = 1e-4
 """A swing that would last no longer than this, in units of 1/p, is left to come to rest."""
@@ -65,31 +66,19 @@ SHORTEST_SWING = 1e-4
 REMAINDER = 0.5
 """Part of the way to an event that each step of an approach leaves for the next."""
 
-NEAR = 1e-6
+NEAR, MOST_ACCELERATION = 1e-6, 3e9
 """An impact is near when the time left is less than this part of the ordinary step, than the
-shortest time that the engine resolves, or than that in which `MOST_ACCELERATION` stops the block.
-"""
+shortest time that the engine resolves, or than that in which this angular acceleration [rad/s2]
+would stop the block in a step; engines take what is much larger for a failure."""
 
-MOST_ACCELERATION = 3e9
-"""An impact is near when this angular acceleration [rad/s2] would stop the block in a step; engines
-take what is much larger for a failure."""
+UPLIFT_PART, UPLIFT_NEAR = 1.0 / 32.0, 2e-3
+"""A block at rest takes steps of this part of the time until the base can lift it, each longer than
+the one before by this part at most: a sudden change would let go of a corner, or leave it as low as
+a long step presses it. An uplift is near when less than this part of the ordinary step is left."""
 
-UPLIFT_PART = 1.0 / 32.0
-"""A block at rest takes steps of this part of the time until the base can lift it. Each is longer
-than the one before by this part at most: a sudden change would let go of a corner, or leave it as
-low as a long step presses it."""
-
-UPLIFT_NEAR = 2e-3
-"""An uplift is near when less than this part of the ordinary step is left."""
-
-STRIKES = 4
-"""Steps at least through an impact, in which the contact takes its effect."""
-
-MOST_STRIKES = 12
-"""Steps at most through an impact."""
-
-SETTLED = 1e-6
-"""An impact is over when a step changes the angular velocity by less than this part of it."""
+STRIKES, MOST_STRIKES, SETTLED = 4, 12, 1e-6
+"""Steps through an impact at least and at most, in which the contact takes its effect; it is over
+when a step changes the angular velocity by less than this part of it."""
 
 FIRST_PART = 0.02
 """The first step after an impact, or of a run that begins aloft, is this part of the next ones: a
@@ -247,10 +236,7 @@ def aloft(to: Landing, pace: Pace, pose: Pose, lifted: bool) -> Choice:
 
 
 def towards_impact(to: Landing, ahead: float, longest: float, pose: Pose) -> Choice:
-    """Leave a part of the way for the next step, or all of it to the shortest steps.
-
-    The impact is `ahead` [s] away; no step is longer than `longest` [s].
-    """
+    """Leave a part of the way, `ahead` [s], for the next step, or all to the shortest steps."""
     if not to.approaching and ahead > longest:
         return Choice(0.5 * ahead, ContactPhase.SWING, to.side)
     to.approaching = True

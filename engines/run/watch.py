@@ -17,18 +17,15 @@ from engines.world import FloatArray, Moment, Pose, Resolution
 RESOLVED_ROWS = 3
 """An impact counts when the swing that it ends was seen aloft at the ends of this many steps."""
 
-EDGE_ROWS = 3
-"""Ends of steps from which the velocity at either end of a swing is read."""
-
-EDGE = EDGE_ROWS + 1
-"""Rows kept of either end of a swing."""
+EDGE = 4
+"""Rows kept of either end of a swing: from the velocities of three that at the end is read."""
 
 SHORTENED = 0.7
 """A step shorter than this part of the one before is one of an approach, which halves what is left;
 even steps up to the next corner of the motion differ by less."""
 
 TIME, RATE_S, THETA, RATE = range(4)
-"""Columns of rows: the end of a step [s], the moment of its velocity [s], rotation, velocity."""
+"""Columns of rows, as of `Row`."""
 
 
 class Row(NamedTuple):
@@ -44,35 +41,30 @@ class Row(NamedTuple):
     rate: float
 
 
-LIFT_WIDTHS = 1e-8
-"""Part of the width. A block has lifted when its free corner is higher above the base than this, or
-than the length that the engine's numbers tell apart, and what `LIFT_FALL` adds. It is above the
-noise of a tuned contact at rest and below the smallest lift of interest."""
+LIFT_WIDTHS, LIFT_FALL = 1e-8, 1e-3
+"""A block has lifted when its free corner is higher above the base than this part of the width, or
+than the length that the engine's numbers tell apart, and this part of g dt^2, twice the way fallen
+in one step, which no engine resolves; and the depth to which the contact was seen to give way under
+the resting block, and twice the height to which the pivot of the last swing hopped, by the
+curvature of its steps. It is above the noise of a tuned contact at rest and below the smallest lift
+of interest."""
 
-LIFT_FALL = 1e-3
-"""Part of g dt^2, twice the way fallen in one step, which no engine resolves. With it are added the
-depth to which the contact was seen to give way under the resting block, and twice the height to
-which the pivot of the last swing hopped, by the curvature of its steps."""
-
-FALL_PART = 0.5
-"""Part of the squared rate that its weight gives a block on the way to upright. One that rocks
-falls back with more than this; one that leans in a soft contact comes back as its load does."""
-
-FALL_STEPS = 2.0
-"""Least number of steps of a fall: a shorter one is not told from a tremor of the contact."""
+FALL_PART, FALL_STEPS = 0.5, 2.0
+"""A block that leans in a soft contact comes back as its load does; one that rocks falls back with
+more than this part of the squared rate that its weight gives it on the way to upright, and in more
+than so many steps: a shorter fall is not told from a tremor of the contact."""
 
 HOVER_WIDTHS = 1e-3
 """A contact that holds a block at rest higher above the base than this part of the width, and by
 more than it leans, has a skin: such a block has not lifted."""
 
-REST_TIME = 0.05
-"""A block at rest has not lifted for this time, in units of 1/p."""
+REST_TIME, REST_RATE = 0.05, 0.01
+"""A block at rest has not lifted for this time, in units of 1/p, and turns no faster than this, in
+units of p alpha."""
 
-REST_RATE = 0.01
-"""A block at rest turns no faster than this, in units of p alpha."""
-
-SLIDE_WIDTHS = 0.1
-"""A pivot that slides further than this part of the width has left the problem."""
+SLIDE_WIDTHS, THROWN_WIDTHS = 0.1, 1.0
+"""A pivot that slides further than this part of the width has left the problem, and one higher
+above the base than this has been thrown off it."""
 
 HOLD_WIDTHS = 0.01
 """A pivot that slides further than this part of the width does not hold, as steps that land on
@@ -83,18 +75,12 @@ PROPPED_PART = 0.5
 """Part of alpha. A block that leans by less, and is neither held nor shaken, turns faster within
 `REST_TIME` than one at rest may."""
 
-THROWN_WIDTHS = 1.0
-"""A pivot higher above the base than this part of the width has been thrown off."""
-
-LYING = 0.5 * math.pi
-"""Rotation [rad] at which the block lies on its side."""
-
-LYING_PART = 0.9
-"""A block that stays where it is, turned by more than this part of that, lies on a soft contact."""
-
+LYING, LYING_PART = 0.5 * math.pi, 0.9
+"""Rotation [rad] at which the block lies on its side, and the part of it from which one that stays
+where it is lies on a soft contact."""
 
 NO_PROBLEM, DIVERGED, SANK, THROWN, SLID, SLIPPED, BEAM_SLIPPED = range(7)
-"""Why the response is no longer that of a rocking block; see `answer.problem_of`."""
+"""Why the response is no longer that of a rocking block; see `run.problem_of`."""
 
 UPLIFT, IMPACT, REST = 0.0, 1.0, 2.0
 """Kinds of events."""
@@ -272,16 +258,7 @@ def begin_watch(
 def see(
     watch: Watch, rows: FloatArray, events: FloatArray, time: float, dt_s: float, pose: Pose
 ) -> None:
-    """Take in a pose at the end of a step.
-
-    Parameters
-    ----------
-    watch : Watch, updated
-    rows : ndarray (k, 4), where a history is kept, a `Row` each
-    events : ndarray (k, 4), where events are written
-    time, dt_s : float, end and length of the step [s]
-    pose : Pose
-    """
+    """Take in a pose at the end [s] of a step, of which rows and events (k, 4) are written."""
     theta = pose.theta
     if not math.isfinite(pose.x + pose.z + theta + pose.rate):
         watch.problem = DIVERGED
@@ -308,13 +285,7 @@ def see(
         begin_swing(watch, 0.0, False)
     if watch.lifted:
         watch.hop = max(watch.hop, level - reach)
-    if abs(theta) <= watch.alpha:
-        inward = math.copysign(watch.half_width * (1.0 - cosine), theta)
-        shifted = pose.x - watch.home - watch.half_height * sine - inward
-        watch.slide = max(watch.slide, abs(shifted))
-    check(watch, level - reach, pose.z)
-    if abs(theta) <= LYING_PART * LYING:
-        watch.sunk = max(watch.sunk, reach - level)
+    check(watch, pose, level - reach, sine, cosine)
     if watch.keeps_rows:
         put(rows, watch.rows, row)
         watch.rows += 1
@@ -349,11 +320,17 @@ def lean(watch: Watch, row: Row) -> None:
     watch.loose = watch.loose or falls or (watch.hovers and abs(row.rate) > watch.rest_rate)
 
 
-def check(watch: Watch, low: float, centre: float) -> None:
-    """Look at the heights [m] of the lowest corner and the centre, and at the slide."""
+def check(watch: Watch, pose: Pose, low: float, sine: float, cosine: float) -> None:
+    """Look at the heights of the lowest corner, `low` [m], and of the centre, and at the slide."""
     width = 2.0 * watch.half_width
+    if abs(pose.theta) <= watch.alpha:
+        inward = math.copysign(watch.half_width * (1.0 - cosine), pose.theta)
+        shifted = pose.x - watch.home - watch.half_height * sine - inward
+        watch.slide = max(watch.slide, abs(shifted))
+    if abs(pose.theta) <= LYING_PART * LYING:
+        watch.sunk = max(watch.sunk, -low)
     watch.sink, watch.highest = max(watch.sink, -low), max(watch.highest, low)
-    if centre < 0.0:
+    if pose.z < 0.0:
         watch.problem, watch.far = SANK, -low
     elif low > THROWN_WIDTHS * width:
         watch.problem, watch.far = THROWN, low
