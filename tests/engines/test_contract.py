@@ -130,14 +130,6 @@ def test_what_a_preset_sets_is_taken_and_what_helps_it_can_be_left_out(engine, p
 
 
 @pytest.mark.parametrize("engine", HERE)
-def test_what_a_variant_sets_is_taken(engine):
-    tried = list(variants(engine))
-    assert {variant.factor for variant in tried} >= {it.name for it in HERE[engine].factors}
-    for variant in tried:
-        takes(engine, preset=variant.preset, settings=variant.settings, **variant.scene)
-
-
-@pytest.mark.parametrize("engine", HERE)
 def test_an_engine_is_imported_when_named_and_says_nothing(engine):
     own = {HERE[engine].library, "numpy", *HERE[engine].packages}  # it may be built on another
     libraries = {other.library for other in ENGINES.values()} - {"numpy"}

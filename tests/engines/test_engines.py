@@ -14,7 +14,6 @@ from declared import NUISANCE, equal_to
 from given import BLOCK, all_but_times, pulse
 from uses import (
     CORE,
-    FIXED,
     HERE,
     MIRRORED,
     TUNED,
@@ -26,7 +25,6 @@ from uses import (
     every_tuned_use,
     every_use,
     in_both_frames,
-    noise,
     rocked,
     scene,
     take_a_step,
@@ -101,18 +99,6 @@ def test_frames_agree(engine, preset):
     assert world.observables.get(LAG, 0.0) < 1e-6
 
 
-@pytest.mark.parametrize(
-    "engine", [name for name in FIXED if HERE[name].preset("fixed").takes(iterations=1)]
-)
-def test_iterations_that_are_asked_for_are_taken(engine):
-    """Also where a preset derives them from the block."""
-    peaks = [
-        rocked(engine, preset="fixed", step=1e-2, settings=settings).peak_ratio
-        for settings in ({}, {"iterations": 1})
-    ]
-    assert peaks[0] != peaks[1]
-
-
 @every_fixed_use
 def test_first_order(engine):
     """A quarter of the step makes about a quarter of the error, in the mean over cases whose
@@ -159,42 +145,6 @@ def test_overturning(engine, preset):
     assert response.crossed
     assert response.peak_ratio == math.inf
     assert list(response.history.time) == [0.1, 0.5]
-
-
-LEAVING = [use for use in TUNED if HERE[use[0]].preset(use[1]).takes(planar=False)]
-"""Those that hold a block in the plane, and can let it leave it."""
-
-
-@pytest.mark.parametrize(("engine", "preset"), LEAVING)
-def test_geometry_can_be_put_back(engine, preset):
-    """Four corners in space move as two in the plane do, also where they set out in a swing."""
-    start = (0.4 * BLOCK.alpha, 0.2 * BLOCK.p * BLOCK.alpha)
-    free = {"planar": False, **({"aside": False} if engine == "dart" else {})}
-    plane, space = (
-        rocked(engine, preset=preset, settings=settings, start=start) for settings in ({}, free)
-    )
-    within = {"fixed": 1e-3, "landing": 2e-4 if engine in CORE else 1e-5}.get(preset, 1e-3)
-    assert space.peak_ratio == pytest.approx(plane.peak_ratio, rel=within + equal_to(engine))
-    assert space.peak_ratio != plane.peak_ratio
-
-
-@every_fixed_use
-def test_history(engine):
-    """Samples stand where the exact ones do, within the first-order error of one impact, which is
-    1e-2 alpha or what 20 p dt come to, and within what its velocity lacks for being made of rounded
-    places.
-
-    That impact falls anywhere in its step, so that its velocity is off by p dt times the
-    acceleration over p times the velocity: a few p dt = 5e-4, doubled in the energy of the peak.
-    """
-    times = [0.05 * i for i in range(60)]
-    exact, response = agreed(engine, preset="fixed", duration=3.0, times=times)
-    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=2e-2)
-    assert response.impacts[0].time == pytest.approx(exact.impacts[0].time, abs=0.01)
-    assert response.history.time == pytest.approx(times)
-    step = HERE[engine].preset("fixed").step
-    allowed = max(1e-2, 20.0 * step) + noise(engine, step)
-    assert response.history.theta == pytest.approx(exact.history.theta, abs=allowed * BLOCK.alpha)
 
 
 @every_use
@@ -248,17 +198,6 @@ def test_steps_that_land_fail_by_name_once_their_pivot_slides(engine, preset, sh
     slid, allowed = slid_of(found)
     assert allowed == pytest.approx(0.01 * FREEZER.width)
     assert allowed <= slid < 2.0 * allowed
-
-
-@pytest.mark.parametrize("engine", CORE)
-def test_equal_steps_say_how_far_the_pivot_slid(engine):
-    """Whatever they call it: in MuJoCo it rocks by 0.007 alpha, in PyBullet it rests."""
-    motion = SinePulse.in_g(0.4, omega=6.28)
-    found = rocked(engine, motion, system=FREEZER, preset="fixed", friction=0.3)
-    assert found.slip_m > 0.01 * FREEZER.width
-    assert slid_of(found)[0] == pytest.approx(found.slip_m, rel=1e-2)
-    held = rocked(engine, pulse(1.3, 3.0, 2, FREEZER), system=FREEZER, preset="fixed")
-    assert (held.outcome, held.message) == (Outcome.ROCKED, "")
 
 
 @pytest.mark.parametrize("engine", CORE)

@@ -7,9 +7,7 @@ import pytest
 from uses import BLOCK, HERE, SHAKEN, agreed, pulse, rocked, scene
 
 from analytic.response import Outcome
-from engines.mujoco import build as mujoco
 from engines.pybullet import NAIVE
-from engines.pybullet import build as bullet
 from engines.run.run import LAG, build
 
 FASTEST = 2.0 * SHAKEN.amplitude / SHAKEN.omega
@@ -53,25 +51,6 @@ def test_what_stands_on_a_floor_that_lags_is_at_rest(engine, onsets):
     response = rocked(engine, pulse(onsets, 3.0, 2), preset="naive")
     assert response.outcome is Outcome.AT_REST
     assert response.observables[LAG] > 1e-3
-
-
-FLOORS = {
-    # but a force below the weight of both lets them fall: engines/troubles
-    "pybullet": (bullet, {"FLOOR_MASSES": (1000.0, 10.0), "FLOOR_G": (2.0,)}, 2e-3),
-    # until it is so large that the solver takes what is left of the block's forces for nothing
-    "mujoco": (mujoco, {"FLOOR_MASSES": (1e2, 1e4)}, 3e-3),
-}
-"""Engine -> what a floor is made of, other values of it, and by what part they move the peak."""
-
-
-@pytest.mark.parametrize("engine", [name for name in FLOORS if name in HERE])
-def test_neither_mass_nor_force_of_a_floor_matters(engine, monkeypatch):
-    found, (module, others, within) = peak(engine), FLOORS[engine]
-    for name, values in others.items():
-        for value in values:
-            with monkeypatch.context() as patch:  # it is a constant of the adapter
-                patch.setattr(module, name, value)
-                assert peak(engine) == pytest.approx(found, rel=within)
 
 
 def test_what_naive_pybullet_does_not_set_is_the_library_s_own():

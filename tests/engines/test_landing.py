@@ -12,13 +12,12 @@ from functools import cache
 import numpy as np
 import pytest
 from declared import equal_to
-from uses import BLOCK, CORE, HERE, SHAKEN, agreed, error, errors_of_sweep, pulse, rocked
+from uses import CORE, HERE, agreed, error, errors_of_sweep, pulse, rocked
 
 from analytic import conditioning, simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome
 from engines import FRAMES, core_engines
-from engines.scene import ACCURACIES
 from studies.cases.drawn import draw
 
 
@@ -50,22 +49,6 @@ def test_some_of_the_sweep(engine):
     _, median, largest = within(engine)
     assert np.median(some_errors(engine)) < median
     assert max(some_errors(engine)) < largest
-
-
-@pytest.mark.parametrize(
-    ("engine", "left_out", "times"),
-    [
-        ("pymunk", {"positions": False}, 10.0),  # its impulses are scaled by the step
-        ("pymunk", {"margin": None}, 10.0),  # a pivot out of reach, or one that creeps,
-        ("pymunk", {"reflection": False}, 10.0),  # costs the order of the method
-        ("box2d", {"margin": None}, 3.0),
-        ("box2d", {"reflection": False}, 3.0),
-    ],
-)
-def test_what_landing_is_helped_by_matters(engine, left_out, times):
-    if engine not in HERE:
-        pytest.skip(f"{engine} is not installed")
-    assert max(errors_of_sweep(engine, 96, settings=left_out)) > times * max(some_errors(engine))
 
 
 @pytest.fixture(params=CORE)
@@ -105,32 +88,6 @@ def test_second_order(engine):
         np.median(errors_of_sweep(engine, every=23, step=1.0 / steps)) for steps in (50, 200)
     )
     assert 1.7 < math.log(coarse / fine, 4.0) < 2.3
-
-
-def test_velocity_ratio_of_small_swings(engine):
-    """Swings below 1e-2 alpha lose what large ones lose: a corner that stays within the contact's
-    reach between two of its impacts must not be drawn to where it stood."""
-    block = RigidBlock(width=2.0, height=10.8)
-    motion = pulse(1.027, 1.08, 4, block)
-    response = rocked(engine, motion, system=block)
-    ratios = [impact.ratio for impact in response.impacts[:12]]
-    assert response.peak_ratio < 1e-2
-    assert ratios == pytest.approx([block.restitution] * 12, abs=5e-5)
-
-
-def test_impacts_by_the_dozen(engine):
-    """Twenty impacts: each adds to the time of the next some 1e-5/p, and takes energy."""
-    motion, duration = pulse(1.5, 2.0), 12.0 / BLOCK.p
-    times = list(np.linspace(motion.duration, duration, 3000))
-    exact, response = agreed(engine, motion, duration=duration, times=times)
-    assert len(exact.impacts) > 20
-    for seen, true in zip(response.impacts[:20], exact.impacts, strict=False):
-        assert BLOCK.p * abs(seen.time - true.time) < 1e-3
-        assert seen.velocity_before == pytest.approx(true.velocity_before, rel=1e-2)
-    theta, rate = np.abs(response.history.theta), response.history.velocity
-    energy = (rate / BLOCK.p) ** 2 / 2.0 + np.cos(BLOCK.alpha - theta) - math.cos(BLOCK.alpha)
-    # in a step that holds an impact, a sampled velocity is neither the one before nor after
-    assert np.diff(energy).max() < 1e-4 * energy[0]
 
 
 def test_rest_and_uplift_again(engine):
@@ -180,23 +137,6 @@ def test_size_frame_and_mirror(engine, aspect):
         peaks.append(rocked(engine, motion, system=block, frame=frame).peak_ratio)
     assert peaks[:4:2] == pytest.approx(peaks[1:4:2], rel=1e-9)
     assert peaks == pytest.approx([peaks[0]] * 6, rel=1e-6)
-
-
-@pytest.mark.slow
-def test_a_minute_of_rest(engine):
-    response = rocked(engine, pulse(0.5, 1.0), duration=60.0, times=[1.0, 59.0])
-    assert response.outcome is Outcome.AT_REST
-    assert np.abs(response.history.theta).max() < 1e-9
-    assert response.slip_m < 1e-9
-
-
-def test_accuracies(engine):
-    """Loose costs a quarter of the standard, tight four times as much."""
-    exact = simulate(BLOCK, SHAKEN).peak_ratio
-    loose, standard, tight = (rocked(engine, accuracy=accuracy) for accuracy in ACCURACIES)
-    assert 3.0 * loose.steps < standard.steps < tight.steps / 3.0
-    assert loose.peak_ratio == pytest.approx(exact, rel=2e-4)
-    assert tight.peak_ratio == pytest.approx(exact, rel=2e-6)
 
 
 @pytest.mark.parametrize("aspect", [3.0, 11.0])

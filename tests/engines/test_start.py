@@ -17,7 +17,6 @@ from uses import (
     LANDING,
     agreed,
     band,
-    every_fixed_use,
     every_landing_use,
     every_use,
     pulse,
@@ -26,7 +25,7 @@ from uses import (
     speed_band,
 )
 
-from analytic import RigidBlock, simulate
+from analytic import RigidBlock
 from analytic.criteria import free_amplitude, frictionless_fall, quarter_period
 from analytic.motion import SinePulse, Still
 from analytic.response import Outcome
@@ -102,27 +101,6 @@ def test_twenty_impacts_of_a_release_come_when_the_closed_forms_say(engine, aspe
     assert (abs(times - known) * block.p < within).all()
 
 
-@every_fixed_use
-def test_equal_steps(engine):
-    """A release falls freely until its impact, whose velocity an equal step misses by its p dt."""
-    response = released(engine, (TILT, 0.0), preset="fixed", step=1e-3)
-    times = [impact.time for impact in response.impacts]
-    assert times[0] == pytest.approx(quarter_period(BLOCK, TILT), rel=1e-3)
-    swing = 2.0 * quarter_period(BLOCK, free_amplitude(BLOCK, TILT, 1))
-    assert times[1] - times[0] == pytest.approx(swing, rel=1e-2)
-
-
-@pytest.mark.parametrize("engine", CORE)
-def test_steps_are_of_second_order_from_the_first_on(engine):
-    """A first step with the wrong inertia, or a whole kick, would leave an error of first order."""
-    impact, peak = quarter_period(BLOCK, TILT), simulate(BLOCK, LIFTING).peak_ratio
-    steps, accuracies = (4e-2, 1e-2), ("loose", "standard")
-    falls = [released(engine, (TILT, 0.0), step=step).impacts[0].time / impact for step in steps]
-    lifts = [rocked(engine, LIFTING, accuracy=it).peak_ratio / peak for it in accuracies]
-    for (coarse, fine), part in ((falls, 0.15), (lifts, 0.12)):
-        assert abs(fine - 1.0) < part * abs(coarse - 1.0)
-
-
 PAST = 1.2
 BARRIER = math.sqrt(2.0 * (1.0 - math.cos((PAST - 1.0) * BLOCK.alpha))) / BLOCK.alpha
 """Rate, in p alpha, that just brings a block back from there."""
@@ -139,12 +117,6 @@ def test_beyond_alpha_and_hardly_tilted(engine, tilt, rate):
     assert (found.crossed, found.uplifts) == (exact.crossed, ())
     if exact.outcome is Outcome.ROCKED:
         assert found.peak_ratio == pytest.approx(tilt, rel=rounding(engine))
-
-
-def test_a_balanced_block_may_be_shaken():
-    """It falls to the side from which the base is moved away, as the exact solution does."""
-    for engine in CORE:
-        agreed(engine, SinePulse(amplitude=1.0, omega=10.0), start=(BLOCK.alpha, 0.0))
 
 
 @every_use

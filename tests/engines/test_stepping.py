@@ -6,13 +6,15 @@ The world keeps the steps that it is given; what it answers is the exact solutio
 import itertools
 import math
 
+import numpy as np
 import pytest
 from known import ScriptedWorld, exactly, watched
 from uses import BLOCK, pulse, scene
 
-from analytic import simulate
-from analytic.response import Outcome
+from analytic import Record, SinePulse, simulate
 from engines.declaration import Stepping
+from engines.run.ground import mean_velocity_of
+from engines.run.steps import loads_of
 from engines.world import ContactPhase, Moment
 
 MOTION = pulse(1.3, 3.0, 2)
@@ -68,19 +70,6 @@ def test_through_an_impact_the_contact_alone_acts(steps):
     assert max(step.dt_s for step in strikes) < 1e-6 / BLOCK.p
 
 
-def test_each_step_knows_the_corner(steps):
-    """The block turns about the corner on the side of its lean, whichever comes to strike."""
-    times = sorted(
-        {step.end_s - 0.5 * step.dt_s for step in steps if step.phase is ContactPhase.SWING}
-    )
-    history = simulate(BLOCK, MOTION, duration=SEEN_S, times=times).history
-    assert history is not None
-    theta = dict(zip(times, history.theta.tolist(), strict=True))
-    for step in steps:
-        if step.phase is ContactPhase.SWING:
-            assert step.side == math.copysign(1.0, theta[step.end_s - 0.5 * step.dt_s])
-
-
 class HangsInTheAir(ScriptedWorld):
     """Is lifted at once, and stays where it is."""
 
@@ -97,18 +86,6 @@ class Bounces(ScriptedWorld):
         phase, _ = math.modf(rate_s / self.period)
         height = abs(math.modf(time / self.period)[0] - 0.5) + 0.1
         return height * self.period * self.rate, math.copysign(self.rate, phase - 0.5)
-
-
-def test_a_block_that_does_not_lift_is_not_lifted():
-    asked = scene(MOTION, accuracy="loose")
-    world = ScriptedWorld(asked)
-    response = watched(world, asked, Stepping.LANDING)
-    assert response.outcome is Outcome.AT_REST
-    assert {step.phase for step in world.steps} == {ContactPhase.REST}
-    # it comes slowly to where the block may lift, and is told which corner carries it then
-    sides = [side for side, _ in itertools.groupby(step.side for step in world.steps)]
-    assert sides[:2] == [0.0, -1.0]
-    assert 1.0 in sides
 
 
 def test_a_block_that_cannot_lift_is_asked_seldom():
@@ -158,3 +135,46 @@ def test_an_impact_that_comes_before_the_base_is_met_is_no_impact():
     assert response.impacts == ()
     assert ContactPhase.STRIKE not in {step.phase for step in world.steps}
     assert len(world.steps) < 4 * 3.0 / LOOSE
+
+
+WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])
+
+
+@pytest.mark.parametrize("excess", [1e-9, 0.1, 5.0])
+def test_loads_are_found_however_short(excess):
+    pulse = SinePulse(amplitude=1.0 + excess, omega=3.0, half_cycles=5)
+    loads = loads_of(pulse, 1.0)
+    level = math.asin(1.0 / (1.0 + excess))
+    begins = [(k * math.pi + level) / 3.0 for k in range(5)]
+    ends = [((k + 1) * math.pi - level) / 3.0 for k in range(5)]
+    # near a crest the time of a crossing is known to the root of the rounding only
+    assert [load.begin for load in loads] == pytest.approx(begins, rel=1e-7)
+    assert [load.end for load in loads] == pytest.approx(ends, rel=1e-7)
+    assert [load.side for load in loads] == [-1.0, 1.0, -1.0, 1.0, -1.0]
+
+
+def test_a_motion_below_the_onset_loads_nothing_however_long():
+    pulse = SinePulse(amplitude=0.999, omega=1e-6, half_cycles=2)
+    assert loads_of(pulse, 1.0) == []
+
+
+def test_the_mean_velocity_of_the_base_is_its_displacement_over_time():
+    """Also over steps longer than a sample, past both ends, from corner to corner."""
+    mean_velocity = mean_velocity_of(WANDERING.segments())
+    draw = np.random.default_rng(4)
+    for begin, finish in [*np.sort(draw.uniform(0, 2.5, (40, 2))).tolist(), (0.0, 1.8), (0.3, 0.6)]:
+        moved = WANDERING.displacement(finish) - WANDERING.displacement(begin)
+        expected = float(moved) / (finish - begin)
+        assert mean_velocity(begin, finish) == pytest.approx(expected, abs=1e-12)
+
+
+def test_loads_are_where_the_acceleration_exceeds_the_onset():
+    loads = loads_of(WANDERING, 1.2)
+    grid = np.linspace(0, WANDERING.duration, 20_001)
+    beyond = np.abs(WANDERING.acceleration(grid)) > 1.2
+    inside = np.zeros_like(beyond)
+    for load in loads:
+        inside |= (grid > load.begin) & (grid < load.end)
+        sign = -math.copysign(1.0, float(WANDERING.acceleration(0.5 * (load.begin + load.end))))
+        assert load.side == sign
+    assert (beyond == inside).all()

@@ -10,8 +10,8 @@ import pytest
 from known import KnownWorld, ScriptedWorld, SelfSteppingWorld, exactly, watched
 from uses import BLOCK, pulse, scene
 
-from analytic import Still, simulate
-from analytic.response import Outcome, Reason
+from analytic import simulate
+from analytic.response import Outcome
 from engines.declaration import Precision, Stepping
 from engines.world import Moment
 
@@ -92,12 +92,6 @@ def test_steps_that_land_see_impacts_to_their_shortest_step(moment):
     assert errors["peak"] < 1e-7
 
 
-def test_what_exact_poses_do_not_do_is_not_seen():
-    """No slide, no penetration, no hop, but for roundings of the pose."""
-    response, _ = exactly(scene(MOTION, duration=SEEN_S, step=0.01), Moment.END, Stepping.FIXED)
-    assert max(response.slip_m, response.sink_m, response.hop_m) < 1e-15 * BLOCK.height
-
-
 @pytest.mark.parametrize("moment", Moment)
 def test_rest_begins_where_swings_are_shorter_than_steps(moment):
     exact = simulate(BLOCK, MOTION, duration=6.0)
@@ -141,15 +135,6 @@ def test_outcome_and_peak_do_not_depend_on_how_deep_a_contact_is(base, onsets, h
     assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-6)
 
 
-def test_a_block_that_sinks_is_a_note_and_no_missing_answer():
-    sunk = seen(MOTION, raised_m=BASES["sunk"])
-    assert sunk.outcome is Outcome.ROCKED
-    assert sunk.sink_m == pytest.approx(DEEP, rel=1e-6)
-    assert f"sank {DEEP:.3g} m" in sunk.message
-    through = seen(MOTION, raised_m=lambda time, _: -BLOCK.height * time)
-    assert through.reason is Reason.SANK
-
-
 FALLING = pulse(6.0, 0.1, 2)
 """It throws the block on its side long before it ends."""
 
@@ -162,13 +147,6 @@ def test_a_block_that_only_lies_deep_has_not_sunk(from_rad, said):
     assert found.outcome is Outcome.OVERTURNED
     assert found.sink_m == pytest.approx(DEEP, rel=1e-6)
     assert ("sank" in found.message) == said
-
-
-def test_one_step_makes_a_history():
-    """There is no other step to take its bend from."""
-    still = scene(motion=Still(), step=0.01, times=(0.0,))
-    once = watched(KnownWorld(still, Moment.END, Stepping.FIXED), still, Stepping.FIXED)
-    assert (once.steps, once.history.theta.tolist()) == (1, [0.0])
 
 
 @pytest.mark.parametrize("leans", [0.3, 1.0])
