@@ -20,10 +20,8 @@ def slid(*, y_free):
     world.gravity = G * math.sin(SLOPE), 0, -G * math.cos(SLOPE)
     floor = rapier.Collider.cuboid(9, 9, 0.5).translation((0, 0, -0.5)).friction(MU)
     world.add_body(rapier.RigidBody.fixed(), [floor])
-    body = (
-        rapier.RigidBody.dynamic().translation((0, 0, 0.5)).enabled_rotations((False, True, False))
-    )
-    body = body.enabled_translations((True, y_free, True))
+    body = rapier.RigidBody.dynamic().translation((0, 0, 0.5))
+    body = body.enabled_rotations((False, True, False)).enabled_translations((True, y_free, True))
     block = world.add_body(body, [rapier.Collider.cuboid(0.5, 0.5, 0.5).friction(MU)])
     for _ in range(round(T / DT)):
         world.step()
