@@ -23,8 +23,8 @@ SOURCES = Path(__file__).parents[__name__.count(".") - 1]
 """The folder of the package that holds the reference's kernels and all that they call."""
 FEW_CASES, FEW_STEPS = 200, 3000
 """Cases of a process, and steps of one, up to which Python takes less time."""
-PLAIN = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
-"""How what kernels call is compiled: it makes no array, and so counts no references to any."""
+PLAIN = {"error_model": "numpy", "no_cfunc_wrapper": True}
+"""How what kernels call is compiled."""
 
 _compiling = threading.RLock()
 _known = set[Callable[..., Any]]()
@@ -35,7 +35,8 @@ class Kernel(Generic[Given, Answer]):
     """A function in both forms.
 
     Of arrays that it is given it may change those in named tuples alone: Python works on lists in
-    place of all others.
+    place of all others. What it calls makes no array, and so counts no references to any, unless it
+    is said to (`arrays`); it is kept with other kernels of a package (`sources`).
     """
 
     tell: ClassVar[Callable[[str], None] | None] = None
@@ -43,8 +44,10 @@ class Kernel(Generic[Given, Answer]):
     cases: ClassVar[float] = 0
     """Cases that this process has solved."""
 
-    def __init__(self, function: Callable[Given, Answer]) -> None:
-        self.function = function
+    def __init__(
+        self, function: Callable[Given, Answer], sources: Path = SOURCES, *, arrays: bool = False
+    ) -> None:
+        self.function, self._sources, self._arrays = function, sources, arrays
         self._compiled: Callable[Given, Answer] | None = None
 
     def few(self, cases: int, steps: float) -> Callable[Given, Answer]:
@@ -64,13 +67,13 @@ class Kernel(Generic[Given, Answer]):
     def compiled(self, *given: Given.args, **named: Given.kwargs) -> Answer:
         """Answer by compiled code; where it cannot be kept, it is compiled without."""
         if self._compiled is None:
-            self._compiled = compiled(self.function, kept_in(SOURCES))
+            self._compiled = compiled(self.function, kept_in(self._sources), self._arrays)
         try:
             return self._compiled(*given, **named)
         except OSError as error:
             if error.errno not in FULL:
                 raise
-            self._compiled = compiled(self.function, None)
+            self._compiled = compiled(self.function, None, self._arrays)
             return self._compiled(*given, **named)
 
 
@@ -79,7 +82,9 @@ def compile_all() -> None:
     Kernel.cases = np.inf
 
 
-def compiled(function: Callable[Given, Answer], folder: Path | None) -> Callable[Given, Answer]:
+def compiled(
+    function: Callable[Given, Answer], folder: Path | None, arrays: bool = False
+) -> Callable[Given, Answer]:
     """Return a function compiled with all that it calls, kept in a folder if there is one.
 
     Other threads of Python run while it does. No operation is merged with another: whether it is
@@ -91,12 +96,12 @@ def compiled(function: Callable[Given, Answer], folder: Path | None) -> Callable
         tell, Kernel.tell = Kernel.tell, None
         tell("compiling, once: some 10 to 40 s")
     with _compiling, cache_folder(folder):
-        _introduce(function)
+        _introduce(function, arrays)
         njit: Any = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")
         return njit(function)
 
 
-def _introduce(function: Callable[..., Any]) -> None:
+def _introduce(function: Callable[..., Any], arrays: bool) -> None:
     """Let compiled code call what a function calls."""
     from numba.extending import register_jitable
 
@@ -104,5 +109,5 @@ def _introduce(function: Callable[..., Any]) -> None:
         called = function.__globals__.get(name)
         if inspect.isfunction(called) and called not in _known:
             _known.add(called)
-            _introduce(called)
-            register_jitable(**PLAIN)(called)
+            _introduce(called, arrays)
+            register_jitable(**PLAIN, **({} if arrays else {"_nrt": False}))(called)

@@ -5,7 +5,7 @@ are looked at by them as they are; for more, `compiled` makes one compiled funct
 bit the same, whose states are numpy's records.
 """
 
-import inspect
+import math
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
@@ -16,7 +16,8 @@ from typing import Any, ClassVar, NamedTuple, get_type_hints
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.kernels.kept import FULL, are_compiled, cache_folder, kept_in
+from analytic.kernels.forms import Kernel
+from analytic.kernels.kept import are_compiled
 from engines.declaration import Stepping
 from engines.run.frame import Spread, begin_spread, see_spread
 from engines.run.ground import rows_of
@@ -259,11 +260,6 @@ class Patience:
     left: ClassVar[float | None] = None
 
 
-def compile_all() -> None:
-    """Look at nothing more in Python in this process: there are many cases to come."""
-    Patience.left = 0.0
-
-
 def pays_to_compile(scene: Scene, dt_s: float) -> bool:
     """Return whether to look by compiled code, which is decided before a run, by its steps."""
     if not scene.compiled or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
@@ -271,7 +267,7 @@ def pays_to_compile(scene: Scene, dt_s: float) -> bool:
     if Patience.left is None:
         Patience.left = Patience.LOADING + (0 if are_compiled(PACKAGE) else Patience.COMPILING)
     Patience.left -= max(scene.motion.duration, scene.duration or 0.0) / dt_s
-    return Patience.left < 0.0
+    return Patience.left < 0.0 or Kernel.cases == math.inf  # there are many cases to come
 
 
 def compile_look() -> None:
@@ -321,41 +317,5 @@ def _record(kind: np.dtype[Any]) -> np.dtype[Any]:
 
 @cache
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function of states compiled with all functions that it calls.
-
-    It is kept on disk, where a place can be written, as long as no module of this package changes.
-    """
-    import numba
-
-    _introduce(function)
-    folder = kept_in(PACKAGE)
-    with cache_folder(folder):
-        made: Any = numba.njit(cache=folder is not None, nogil=True, error_model="numpy")(function)
-
-    def call(*given: Any) -> Any:
-        nonlocal made
-        try:
-            return made(*given)
-        except OSError as error:  # the disk is full
-            if error.errno not in FULL:
-                raise
-            made = numba.njit(nogil=True, error_model="numpy")(function)
-            return made(*given)
-
-    return call
-
-
-_known = set[Callable[..., Any]]()
-"""What compiled code may call."""
-
-
-def _introduce(function: Any) -> None:
-    """Let compiled code call the functions that a function calls; Python calls them as they are."""
-    from numba.extending import register_jitable
-
-    for name in function.__code__.co_names:
-        called = function.__globals__.get(name)
-        if inspect.isfunction(called) and called not in _known:
-            _known.add(called)
-            _introduce(called)
-            register_jitable(error_model="numpy", no_cfunc_wrapper=True)(called)
+    """Return a function of states compiled with all functions that it calls."""
+    return Kernel(function, PACKAGE, arrays=True).compiled

@@ -110,7 +110,7 @@ def maker_of(source: Source, measure: Callable[..., Any]) -> Maker:
     # what a study measures may take the exact solution beside the engine's answer
     made["analytic"] = code_in(*known) if measured == {ANSWER} else _reference()
     own = [file for file in ENGINES_AT.glob("*.py") if file.stem not in OWN]
-    made["engines"] = code_in(*own, ENGINES_AT / "parts", ENGINES_AT / "run")
+    made["engines"] = code_in(*own, ENGINES_AT / "run")
     made["studies"] = code_in(*measured, SOURCES / "registry.py")
     return {**made, f"code of {source.engine}": code_in(_code_of(source.declared.build.__module__))}
 

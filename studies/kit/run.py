@@ -18,7 +18,6 @@ from analytic.kernels.kept import are_compiled
 from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason, Response
 from engines.run.look import PACKAGE, compile_look
-from engines.run.look import compile_all as compile_looks
 from studies.cases.refusal import BadInputError
 from studies.kit.app import ENDING
 from studies.kit.identity import Maker, maker_of
@@ -75,19 +74,13 @@ def local(
         yield number, row
 
 
-def _compile_all() -> None:
-    """Interpret nothing more in this process: there are many cases to come."""
-    compile_all()
-    compile_looks()
-
-
 _loaded = set[str]()
 """Sources whose kernels this process has loaded."""
 
 
 def _load(job: Job) -> None:
     """Load what is compiled of a job's source: that is no part of the first case's run time."""
-    _compile_all()
+    compile_all()
     if job.asked.kind != "engine" and job.source not in _loaded:
         _loaded.add(job.source)
         ask(_short(job))
@@ -136,7 +129,7 @@ def _compile_for(jobs: Sequence[Job]) -> None:
 
 
 def _call(call: Callable[..., Any], *given: Any) -> None:
-    _compile_all()  # a short job would be interpreted, and the first long one compile in its time
+    compile_all()  # a short job would be interpreted, and the first long one compile in its time
     call(*given)
 
 
