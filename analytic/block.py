@@ -46,8 +46,8 @@ class Rocker(Protocol):
 class Upright:
     """A homogeneous rectangular block that stands on its base, and what its sizes alone say.
 
-    B, H [m] and g [m/s2] are positive, and neither they nor alpha of a size whose square floating
-    point does not hold; else there is a ValueError.
+    B, H [m] and g [m/s2] must be positive, and floating point must hold their squares and that of
+    alpha; a ValueError says what is not.
     """
 
     width: float

@@ -34,7 +34,7 @@ from analytic.kernels.law import (
     Start,
     State,
     note,
-    sample_rest,
+    sample_still,
 )
 from analytic.kernels.rest import (
     acceleration,
@@ -140,8 +140,10 @@ class Cubic(NamedTuple):
     h: float
 
 
-def rk4_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic:
-    """Advance by one classical Runge-Kutta step."""
+def take_step(law: Law, segment: FloatArray, begin: State, h: float, rk4: bool) -> Cubic:
+    """Advance by one step, of classical Runge-Kutta or of average acceleration."""
+    if not rk4:
+        return average_step(law, segment, begin, h)
     side, tau, _, y, v = begin
     middle = shaking(segment, tau + 0.5 * h)
     k1 = acceleration(law, side, shaking(segment, tau), y)
@@ -254,10 +256,10 @@ def tread(
     side, y, v = start
     tau, peak, h = 0.0, y, solver.step
     j = steps = impacts = events = n = 0
-    while True:
+    while steps < MAX_STEPS:
         if side == 0.0:
             j, rise, side, _ = next_uplift(moving, j, tau, law.onset)
-            n = sample_rest(notes, min(rise, last), n)
+            n = sample_still(notes, min(rise, last), n, 0.0, 0.0)
             if side == 0.0:
                 outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
                 return End(outcome, peak, steps, impacts, events, last, 0.0, 0.0)
@@ -268,17 +270,11 @@ def tread(
             ahead = free_peak(law, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
             return End(outcome, max(peak, ahead), steps, impacts, events, tau, y, v)
-        if steps == MAX_STEPS:
-            return End(TOO_LONG, peak, steps, impacts, events, tau, y, v)
-
         steps += 1
         segment, begin = moving[j], State(side, tau, 0, y, v)
         landed = tau + h >= segment[1]
         length = segment[1] - tau if landed else h
-        if solver.rk4:
-            path = rk4_step(law, segment, begin, length)
-        else:
-            path = average_step(law, segment, begin, length)
+        path = take_step(law, segment, begin, length, solver.rk4)
         if not (abs(path.end) + abs(path.rate) < math.inf and length > tau * VANISHING):
             return End(BROKEN, peak, steps, impacts, events, tau, y, v)
         if path.end < -solver.tolerance and length > 1e-15:
@@ -292,8 +288,7 @@ def tread(
         found = verdict(law, path, not followed and tau > ended)
         if found != UNDECIDED:
             return End(found, peak, steps, impacts, events, tau, y, v)
-        if v > 0.0:
-            h = solver.step
+        h = solver.step if v > 0.0 else h
         if y <= solver.tolerance and v < 0.0:
             impacts += 1
             events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
@@ -303,6 +298,7 @@ def tread(
             if side == 0.0:
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
+    return End(TOO_LONG, peak, steps, impacts, events, tau, y, v)
 
 
 TREAD = Kernel(tread)

@@ -13,6 +13,7 @@ from analytic.kernels.closed_form import free_peak, linear_state
 from analytic.kernels.forces import (
     forget_fall,
     watch_free,
+    watch_rest,
     watch_step,
     watch_to_passing,
     watch_train,
@@ -28,7 +29,7 @@ from analytic.kernels.law import (
     Start,
     State,
     note,
-    sample_rest,
+    sample_still,
 )
 from analytic.kernels.polynomial import (
     MAX_DEPTH,
@@ -47,7 +48,6 @@ from analytic.kernels.rest import (
     ground,
     next_uplift,
     segment_at,
-    strongest_between,
 )
 from analytic.kernels.taylor import (
     Accuracy,
@@ -188,8 +188,7 @@ def take_step(
     else:
         y, v = value(d, order, x), slope(d, order, x) / h
     # a root within rounding of the step's end may escape the polynomial, not the state
-    if kind == FREE and y <= 0.0:
-        kind = HIT
+    kind = HIT if kind == FREE and y <= 0.0 else kind
     if kind != FALLEN and not abs(y) + abs(v) < math.inf:
         kind = LOST
     tau = end if whole and x == 1.0 else begin.tau + x * h
@@ -245,19 +244,16 @@ def march(
     notes : Notes
     work : ndarray (MAX_DEPTH + 12, ORDER + 1), spare
     """
-    watched, last = len(notes.limits) > 0, moving[-1][1]
+    last, limits = moving[-1][1], notes.limits
     side, y, v = start
     tau, peak, lead = 0.0, max(y, above), 1 if y == 0.0 else 0
     j = steps = impacts = events = n = 0
-    while True:
+    while steps < MAX_STEPS:
         if side == 0.0:
             resting = j
             j, rise, side, lead = next_uplift(moving, j, tau, law.onset)
-            n = sample_rest(notes, min(rise, last), n)
-            if watched:
-                # the friction that carries it along
-                strongest = strongest_between(moving, resting, tau, rise)
-                notes.limits[1] = max(notes.limits[1], strongest)
+            n = sample_still(notes, min(rise, last), n, 0.0, 0.0)
+            watch_rest(limits, moving, resting, tau, rise)
             if side == 0.0:
                 outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
                 return End(outcome, peak, steps, impacts, events, last, 0.0, 0.0)
@@ -265,32 +261,22 @@ def march(
             events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
         j = segment_at(moving, j, tau)
         if tau >= last:
-            while n < len(notes.times) and notes.times[n] <= last:  # of a motion without length
-                notes.samples[0, n] = side * y
-                notes.samples[1, n] = side * v
-                n += 1
+            sample_still(notes, last, n, side * y, side * v)  # of a motion without length
             ahead = free_peak(law, y, v)
-            if watched:
-                watch_free(notes.limits, law, y, v)
+            watch_free(limits, law, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
             return End(outcome, max(peak, ahead), steps, impacts, events, last, y, v)
-        if steps == MAX_STEPS:
-            return End(TOO_LONG, peak, steps, impacts, events, tau, y, v)
-
         steps += 1
         segment, begin = moving[j], State(side, tau, lead, y, v)
         step = take_step(law, accuracy, segment, begin, peak, work)
         if step.kind == LOST:
             return End(BROKEN, peak, steps, impacts, events, tau, y, v)
         n = sample_step(law, segment, begin, work[4], accuracy.order, step, notes, n)
-        if watched:
-            if step.y >= law.alpha:
-                watch_to_passing(notes.limits, law, accuracy.order, step.h, step.x, work)
-            watch_step(notes.limits, accuracy.order, step.h, step.x, work)
+        watch_to_passing(limits, law, accuracy.order, step.h, step.x, work, step.y)
+        watch_step(limits, accuracy.order, step.h, step.x, work)
         tau, y, v, peak, lead = step.tau, step.y, step.v, step.peak, 0
         if step.kind == FALLEN:
-            if watched:
-                forget_fall(notes.limits)
+            forget_fall(limits)
             return End(OVERTURNED, peak, steps, impacts, events, tau, y, v)
         if step.kind == HIT:
             impacts += 1
@@ -299,10 +285,10 @@ def march(
             side, wait = after_impact(law, moving, j, tau, turned, v)
             lead = 1 if v != 0.0 else 2
             if side == 0.0:
-                if watched:
-                    watch_train(notes.limits, law, turned, ground(moving, j, tau), v)
+                watch_train(limits, law, turned, ground(moving, j, tau), v)
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
+    return End(TOO_LONG, peak, steps, impacts, events, tau, y, v)
 
 
 MARCH = Kernel(march)

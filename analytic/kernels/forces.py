@@ -4,9 +4,9 @@ A negative normal force means that the pivot lifts off; friction below the ratio
 to the normal force means that it slides. Of a block that overturns the forces count until it passes
 the critical rotation for good: those of its fall decide nothing.
 
-`limits` (4,) holds the smallest normal force over weight and the largest friction ratio so far, and
-what the two were when the block last passed the critical rotation. Symbols and units are those of
-`analytic.kernels.law`.
+`limits` holds the smallest normal force over weight and the largest friction ratio so far, and what
+the two were when the block last passed the critical rotation; it is empty where nothing is watched.
+Symbols and units are those of `analytic.kernels.law`.
 """
 
 import math
@@ -14,7 +14,7 @@ import math
 from analytic.kernels.closed_form import is_lost, turning_rotation, work_to
 from analytic.kernels.law import FloatArray, Law
 from analytic.kernels.polynomial import highest, next_root, value
-from analytic.kernels.rest import acceleration
+from analytic.kernels.rest import acceleration, strongest_between
 
 NOTHING_YET = (1.0, 0.0, 1.0, 0.0)
 """Limits before the first state, of a block at rest on a base at rest."""
@@ -50,9 +50,15 @@ def watch(limits: FloatArray, law: Law, side: float, a: float, y: float, v: floa
     keep(limits, normal, horizontal)
 
 
+def watch_rest(limits: FloatArray, segments: FloatArray, j: int, begin: float, end: float) -> None:
+    """Watch a block at rest between two times: it needs the friction that carries it along."""
+    if len(limits) > 0:
+        limits[1] = max(limits[1], strongest_between(segments, j, begin, end))
+
+
 def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -> None:
     """Watch a train of impacts that is summed, from its begin to rest."""
-    if v == 0.0:
+    if v == 0.0 or len(limits) == 0:
         return
     watch(limits, law, side, a, 0.0, v)
     watch(limits, law, -side, a, 0.0, law.eta * v)
@@ -61,9 +67,11 @@ def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -
 
 
 def watch_to_passing(
-    limits: FloatArray, law: Law, order: int, h: float, x: float, work: FloatArray
+    limits: FloatArray, law: Law, order: int, h: float, x: float, work: FloatArray, y: float
 ) -> None:
-    """Watch a step beyond the critical rotation until it passes that, before the whole of it."""
+    """Watch a step that ends beyond the critical rotation, at y, until it passes that."""
+    if len(limits) == 0 or y < law.alpha:
+        return
     beyond, spare = work[5], work[6:]
     for i in range(order + 1):
         beyond[i] = work[4][i]
@@ -82,7 +90,8 @@ def watch_to_passing(
 
 def forget_fall(limits: FloatArray) -> None:
     """Go back to the limits when the block last passed the critical rotation."""
-    limits[0], limits[1] = limits[2], limits[3]
+    if len(limits) > 0:
+        limits[0], limits[1] = limits[2], limits[3]
 
 
 def watch_step(limits: FloatArray, order: int, h: float, x: float, work: FloatArray) -> None:
@@ -92,6 +101,8 @@ def watch_step(limits: FloatArray, order: int, h: float, x: float, work: FloatAr
     of abs(T) to N: T - mu N has no positive maximum, and each one there is gives a better mu
     (Dinkelbach 1967).
     """
+    if len(limits) == 0:
+        return
     normal, tangential, excess, spare = work[5], work[6], work[7], work[8:]
     degree = order - 2
     expand_forces(degree, h, work[:4], normal, tangential, excess)
@@ -143,6 +154,8 @@ def expand_forces(
 
 def watch_free(limits: FloatArray, law: Law, y: float, v: float) -> None:
     """Watch free rocking to the rest, or until the block passes alpha for good."""
+    if len(limits) == 0:
+        return
     if is_lost(law, y, v):
         forget_fall(limits)
         return

@@ -100,9 +100,10 @@ def note(log: FloatArray, n: int, kind: float, tau: float, before: float, after:
     return n + 1
 
 
-def sample_rest(notes: Notes, until: float, n: int) -> int:
-    """Sample a rest up to a time; return the number of samples so far."""
+def sample_still(notes: Notes, until: float, n: int, theta: float, rate: float) -> int:
+    """Sample a state that lasts up to a time; return the number of samples so far."""
     while n < len(notes.times) and notes.times[n] <= until:
-        notes.samples[0, n] = notes.samples[1, n] = 0.0
+        notes.samples[0, n] = theta
+        notes.samples[1, n] = rate
         n += 1
     return n
