@@ -109,8 +109,8 @@ def maker_of(source: Source, measure: Callable[..., Any]) -> Maker:
     known = (ROOT / "analytic" / f"{name}.py" for name in describing)
     # what a study measures may take the exact solution beside the engine's answer
     made["analytic"] = code_in(*known) if measured == {ANSWER} else _reference()
-    own = [file for file in ENGINES_AT.glob("*.py") if file.stem not in OWN]
-    made["engines"] = code_in(*own, ENGINES_AT / "run")
+    shared = [*ENGINES_AT.glob("*.py"), *(ENGINES_AT / "run").glob("*.py")]
+    made["engines"] = code_in(*(file for file in shared if file.stem not in (*OWN, "export")))
     made["studies"] = code_in(*measured, SOURCES / "registry.py")
     return {**made, f"code of {source.engine}": code_in(_code_of(source.declared.build.__module__))}
 
