@@ -231,12 +231,3 @@ def test_the_papers_solver_lands_on_samples():
         tested = integrate(BLOCK, record, step=step, event_tolerance=1e-14, times=times)
         errors.append(np.sqrt(np.mean((tested.history.theta - exact.history.theta) ** 2)))
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(4, abs=0.5)
-
-
-def test_scipy_peers_take_more_samples_than_excursions():
-    """A limit on excursions is none on samples."""
-    record = Record(dt=1e-3, samples=1.02 * ONSET * np.sin(np.linspace(0, math.pi, 2501)))
-    exact = simulate(BLOCK, record)
-    response = respond("rk45", BLOCK, record)
-    assert response.outcome is exact.outcome
-    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-6)
