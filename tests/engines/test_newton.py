@@ -10,8 +10,8 @@ from analytic import simulate
 from analytic.block import RigidBlock
 from analytic.response import Outcome
 from engines import ENGINES
+from engines import newton as newton_models
 from engines.declaration import AT_REST
-from engines.newton import models as newton_models
 from engines.run.run import build
 
 pytestmark = pytest.mark.skipif("newton" not in HERE, reason="newton is not installed")
@@ -72,7 +72,7 @@ def test_what_naive_leaves_is_what_the_library_does_itself():
     import newton
 
     world = build(HERE["newton"].use(scene(preset="naive")))
-    solver, bare = world._recorded._solver, newton.solvers.SolverXPBD(world._recorded.model)
+    solver, bare = world._recorded.it.solver, newton.solvers.SolverXPBD(world._recorded.it.model)
     for name in (
         *("iterations", "rigid_contact_relaxation", "rigid_contact_con_weighting"),
         *("angular_damping", "enable_restitution"),

@@ -1,0 +1,481 @@
+"""Newton (Warp): settings, presets, and how a scene is built, stepped and read back, on the CPU.
+
+A step is dozens of short kernels: they are recorded once, with the step's length, and replayed. To
+make a model takes as long as hundreds of its steps: that of one block is kept for the next run of
+the same, which sets out from where its own scene begins. The library compiles its kernels when they
+are first used on a machine, for minutes, and keeps them there.
+"""
+
+import math
+from collections import OrderedDict
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from engines.declaration import (
+    AS_BEST,
+    BEST,
+    BOTH,
+    BY_DEFAULT,
+    DEFAULT,
+    UNMOVED_BASE,
+    Citation,
+    Engine,
+    Factor,
+    Precision,
+    Preset,
+    Rule,
+    factor,
+    level,
+    moving_base,
+)
+from engines.parts import NO_JAM, half_size, imported, silence, touching_spheres
+from engines.run.export import Notes, Script
+from engines.scene import Scene
+from engines.settings import check, disagreement, given, setting
+from engines.world import FloatArray, Moment, Pose, Step
+
+MOST_CONTACTS = 4, 16
+"""Room for so many contacts of a block, having four corners at its base, and of each pair of faces
+where bodies rest on others; by its own estimate the library solves for hundreds in every step."""
+
+MOST_IDLE = 8
+"""Models kept for later runs."""
+
+UPRIGHT = (0.0, 0.0, 0.0, 1.0)
+"""A quaternion, its real part last."""
+
+XPBD = "xpbd"
+"""The solver by positions; the other ones are Kamino's, by impulses."""
+
+SOLVERS = (XPBD, "padmm", "dvi")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NewtonSettings:
+    """Settings of Newton, by default those of its own example of a belt; None leaves its own.
+
+    Attributes
+    ----------
+    geometry : str
+        "box", or "corners": four small spheres where the corners at the base are.
+    friction : float
+        Coefficient between block and base.
+    solver : str
+        "xpbd", or Kamino with one of its two solvers of dynamics, "padmm" or "dvi".
+    iterations : int or None
+        Of "xpbd", whose own are 2, and "padmm"; "dvi" has none.
+    relaxation : float or None
+        Part of a contact's correction that "xpbd" makes in an iteration; its own is 0.8.
+    weighting : bool or None
+        Whether "xpbd" divides a correction by the number of contacts, by which momentum is lost.
+    baumgarte : float or None
+        Part of a penetration that Kamino corrects in a step, by a velocity; its own is 0.01.
+    depth : float or None
+        Penetration over the width that Kamino leaves as it is; its own is 1e-6 m.
+    tolerance : float or None
+        Of "padmm"; its own is 1e-6.
+    restitution : float or None
+        Coefficient of block and base; "xpbd" heeds it where it is told to, as here.
+    corner_radius : float
+        Radius of the corner spheres over the width.
+    floor : str
+        How a base that moves is moved: by its "velocity", or by "position" alone.
+    """
+
+    geometry: str = setting("box", names=("box", "corners"))
+    friction: float = setting(1.0, least=0.0)
+    solver: str = setting(XPBD, names=SOLVERS)
+    iterations: int | None = setting(least=1)
+    relaxation: float | None = setting(above=0.0, most=2.0)
+    weighting: bool | None = None
+    baumgarte: float | None = setting(least=0.0, most=1.0)
+    depth: float | None = setting(least=0.0)
+    tolerance: float | None = setting(above=0.0)
+    restitution: float | None = setting(least=0.0, most=1.0)
+    corner_radius: float = setting(1e-3, above=0.0)
+    floor: str = setting("velocity", names=("velocity", "position"))
+
+    def __post_init__(self) -> None:
+        check(self)
+        if self.iterations is not None and self.solver == "dvi":
+            raise ValueError(f"iterations are {self.iterations!r}; the solver 'dvi' takes none")
+
+    def of_xpbd(self) -> dict[str, Any]:
+        """Return the arguments of XPBD that are set."""
+        return given(
+            {
+                "iterations": self.iterations,
+                "rigid_contact_relaxation": self.relaxation,
+                "rigid_contact_con_weighting": self.weighting,
+                "enable_restitution": None if self.restitution is None else True,
+            }
+        )
+
+
+class Model(NamedTuple):
+    """What takes a step, from `now` over `after`."""
+
+    newton: Any
+    warp: Any
+    model: Any
+    pipeline: Any
+    contacts: Any
+    solver: Any
+    now: Any
+    after: Any
+    moving: bool
+
+    def advance(self, dt_s: float) -> None:
+        """Take a step of a length [s]."""
+        now = self.now
+        if self.moving:
+            only = self.newton.BodyFlags.KINEMATIC
+            self.newton.eval_fk(self.model, now.joint_q, now.joint_qd, now, body_flag_filter=only)
+        self.pipeline.collide(now, self.contacts)
+        self.solver.step(now, self.after, None, self.contacts, dt_s)
+        now.assign(self.after)
+
+
+def build(newton: Any, warp: Any, scene: Scene, s: NewtonSettings) -> Model:
+    """Build bodies on a plane that does not move, or on a kinematic one."""
+    moving = scene.frame == "world"
+    builder = newton.ModelBuilder(gravity=(0.0, 0.0, -scene.system.gravity))
+    if s.solver != XPBD:
+        newton.solvers.SolverKamino.register_custom_attributes(builder)
+    builder.default_shape_cfg.mu = float(s.friction)
+    if s.restitution is not None:
+        builder.default_shape_cfg.restitution = s.restitution
+    # in which order things are made decides in which they are solved for
+    if not moving and not scene.stacked:
+        builder.add_ground_plane()
+    shape = builder.default_shape_cfg.copy()
+    shape.density = 0.0
+    for number in range(len(scene.bodies)):
+        add_body(builder, warp, scene, number, s, shape)
+    if moving:
+        shape.density = 0.0
+        mass, turning = scene.bodies[0].mass, diagonal(warp, *scene.bodies[0].inertia)
+        floor = builder.add_link(mass=mass, inertia=turning, is_kinematic=True)
+        builder.add_shape_plane(body=floor, width=0.0, length=0.0, cfg=shape)
+        rail = builder.add_joint_prismatic(parent=-1, child=floor, axis=newton.Axis.X)
+        builder.add_articulation([rail])
+    elif scene.stacked:
+        builder.add_ground_plane()
+    model = builder.finalize(device="cpu")
+    one, each = MOST_CONTACTS
+    most = each * len(scene.layout.contacts) if scene.stacked else one
+    model.rigid_contact_max = most
+    pipeline = newton.CollisionPipeline(model, rigid_contact_max=most)
+    contacts = pipeline.contacts()
+    solver = new_solver(newton, model, s, scene.system.width)
+    now, after = model.state(), model.state()
+    return Model(newton, warp, model, pipeline, contacts, solver, now, after, moving)
+
+
+def add_body(
+    builder: Any, warp: Any, scene: Scene, number: int, s: NewtonSettings, shape: Any
+) -> None:
+    """Add a body where it is at rest: a box, or small spheres where it touches others."""
+    body = scene.bodies[number]
+    at, (x, y, z) = warp.transform((body.home[0], 0.0, body.home[1]), UPRIGHT), half_size(body)
+    if s.geometry == "box" and not scene.stacked:
+        shape.density = body.density
+        builder.add_shape_box(builder.add_body(xform=at), hx=x, hy=y, hz=z, cfg=shape)
+        return
+    turning = diagonal(warp, *body.inertia)
+    own = builder.add_body(xform=at, mass=body.mass, inertia=turning, lock_inertia=True)
+    if s.geometry == "box" or scene.layout.rests(number):
+        builder.add_shape_box(own, hx=x, hy=y, hz=z, cfg=shape)
+        return
+    radius = s.corner_radius * body.width
+    for corner in touching_spheres(scene, number, radius, planar=False):
+        there = warp.transform(corner, UPRIGHT)
+        builder.add_shape_sphere(own, xform=there, radius=radius, cfg=shape)
+
+
+def diagonal(warp: Any, first: float, second: float, third: float) -> Any:
+    """Return a matrix of moments of inertia."""
+    return warp.mat33(first, 0.0, 0.0, 0.0, second, 0.0, 0.0, 0.0, third)
+
+
+def new_solver(newton: Any, model: Any, s: NewtonSettings, width: float) -> Any:
+    """Return the solver of a model."""
+    if s.solver == XPBD:
+        return newton.solvers.SolverXPBD(model, **s.of_xpbd())
+    config = newton.solvers.SolverKamino.Config.from_model(model, dynamics_solver=s.solver)
+    if s.baumgarte is not None:
+        config.constraints.gamma = s.baumgarte
+    if s.depth is not None:
+        config.constraints.delta = s.depth * width
+    if s.solver == "padmm" and s.iterations is not None:
+        config.padmm.max_iterations = s.iterations
+    for name in ("primal", "dual", "compl") if s.solver == "padmm" and s.tolerance else ():
+        setattr(config.padmm, f"{name}_tolerance", s.tolerance)
+    return newton.solvers.SolverKamino(model, config=config)
+
+
+class Recorded:
+    """A step of a model, known again by what that is made of, and views of its state.
+
+    Views are in single precision, a row for each body, then for a plane that moves: force [N] and
+    moment [N m] that act; position [m] and quaternion; velocity [m/s] and angular velocity [rad/s].
+    The last of a joint's coordinates are place [m] and velocity [m/s] of a plane that moves.
+    """
+
+    def __init__(self, scene: Scene, settings: NewtonSettings, dt_s: float) -> None:
+        self.made_of = made_of(scene, settings, dt_s)
+        warp = imported("warp")
+        self.it = it = build(imported("newton"), warp, scene, settings)
+        it.advance(dt_s)  # compiles its kernels
+        with warp.ScopedCapture(device="cpu") as recorded:
+            it.advance(dt_s)
+        self.graph, now = recorded.graph, it.now
+        self.force, self.place = now.body_f.numpy(), now.body_q.numpy()
+        self.velocity = now.body_qd.numpy()
+        self.joint_q, self.joint_qd = now.joint_q.numpy(), now.joint_qd.numpy()
+
+
+def made_of(scene: Scene, settings: NewtonSettings, dt_s: float) -> Hashable:
+    """Return what the model of a scene is made of; where the scene begins is none of it."""
+    bodies = tuple((half_size(body), body.density, body.home) for body in scene.bodies)
+    return settings, dt_s, bodies, scene.layout.contacts, scene.system.gravity, scene.frame
+
+
+idle: "OrderedDict[Hashable, Recorded]" = OrderedDict()
+"""Models of this process whose run has ended, by what they are made of."""
+
+
+class NewtonWorld:
+    """Bodies in space, on a plane that does not move, or on a kinematic one."""
+
+    moment = Moment.MIDDLE
+
+    def __init__(self, scene: Scene, settings: NewtonSettings, dt_s: float) -> None:
+        self._s, self._dt, self._moving = settings, dt_s, scene.frame == "world"
+        self._masses = [body.mass for body in scene.bodies]
+        self._gravity, self.lag_m = scene.system.gravity, 0.0
+        self._warp: Any = imported("warp")
+        self._warp.config.log_level = self._warp.LOG_ERROR
+        with silence():
+            kept = idle.pop(made_of(scene, settings, dt_s), None)
+            self._recorded = kept or Recorded(scene, settings, dt_s)
+            self._recorded.it.solver.reset(self._recorded.it.now)
+        self._force, self._place = self._recorded.force, self._recorded.place
+        self._velocity, self._graph = self._recorded.velocity, self._recorded.graph
+        for number, body in enumerate(scene.bodies):
+            at, half = body.at, 0.5 * body.at.theta
+            self._place[number] = (at.x, 0.0, at.z, 0.0, math.sin(half), 0.0, math.cos(half))
+            self._velocity[number] = (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
+        if self._moving:
+            self._place[-1, 0] = 0.0
+        self._state = np.zeros((len(scene.bodies), len(Pose._fields)))
+        self._fault = self._read_back(scene)
+
+    def step(self, step: Step) -> None:
+        """Advance by a step, of which all are equal."""
+        if step.dt_s != self._dt:
+            self._fault = self._fault or "its steps are recorded, and all of one length"
+        for number, mass in enumerate(self._masses):
+            self._force[number, 0] = mass * step.pull_x
+            self._force[number, 2] = mass * (step.pull_z + self._gravity)
+        if self._moving:
+            speed = step.base_velocity if self._s.floor == "velocity" else 0.0
+            self._recorded.joint_q[-1], self._recorded.joint_qd[-1] = step.base_x, speed
+        self._warp.capture_launch(self._graph)
+        if self._moving:
+            self.lag_m = max(self.lag_m, abs(float(self._place[-1, 0]) - step.base_x))
+
+    def state(self) -> FloatArray:
+        """Read the bodies' poses back."""
+        moved = float(self._place[-1, 0]) if self._moving else 0.0
+        for number, row in enumerate(self._state):
+            x, _, z, _, turn_y, _, turn_w = self._place[number].tolist()
+            rate = float(self._velocity[number, 4])
+            row[:] = x - moved, z, 2.0 * math.atan2(turn_y, turn_w), rate
+        return self._state
+
+    def fault(self) -> str:
+        """Say which setting was not taken, or that a step was not the one that is recorded."""
+        return self._fault
+
+    def close(self) -> None:
+        """Leave the engine's memory to the next run of the same bodies."""
+        idle[self._recorded.made_of] = self._recorded
+        if len(idle) > MOST_IDLE:
+            idle.popitem(last=False)
+
+    def _read_back(self, scene: Scene) -> str:
+        model = self._recorded.it.model
+        mass, inertia = model.body_mass.numpy(), model.body_inertia.numpy()
+        friction = min(model.shape_material_mu.numpy().tolist())
+        pairs = {"friction": (self._s.friction, friction)}
+        for number, body in enumerate(scene.bodies):
+            pairs[f"mass {number}"] = (body.mass, float(mass[number]))
+            pairs[f"moment {number}"] = (body.inertia[1], float(inertia[number, 1, 1]))
+        return disagreement(pairs, Precision.SINGLE.value)
+
+
+def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
+    """Return a scene as calls of Newton; see `engines.run.export`."""
+    notes, moving = Notes(chained=True), scene.frame == "world"
+    newton, warp = (
+        notes.of(imported(it), name) for it, name in (("newton", "newton"), ("warp", "wp"))
+    )
+    with silence():
+        it = build(newton, warp, scene, settings)
+    notes.name(model=it.model, pipeline=it.pipeline, contacts=it.contacts)
+    notes.name(solver=it.solver, now=it.now, after=it.after)
+    carry = (
+        "    only = newton.BodyFlags.KINEMATIC",
+        "    newton.eval_fk(model, now.joint_q, now.joint_qd, now, body_flag_filter=only)",
+    )
+    begins = []
+    for number, body in enumerate(scene.bodies):
+        at, half = body.at, 0.5 * body.at.theta
+        turn = f"0.0, math.sin({half!r}), 0.0, math.cos({half!r})"
+        speed = f"{at.velocity_x!r}, 0.0, {at.velocity_z!r}, 0.0, {at.rate!r}, 0.0"
+        begins.append(f"place[{number}] = {at.x!r}, 0.0, {at.z!r}, {turn}")
+        begins.append(f"velocity[{number}] = {speed}")
+    return Script(
+        imports=("import newton", "import warp as wp"),
+        settings=notes.quoted("Solver", "cfg.", "config.", "contact_max"),
+        build=(
+            *notes.lines(),
+            *("", "", "def advance():", *carry * moving),
+            "    pipeline.collide(now, contacts)",
+            "    solver.step(now, after, None, contacts, DT)",
+            *("    now.assign(after)", "", ""),
+            "advance()  # compiles its kernels",
+            "with wp.ScopedCapture(device='cpu') as recorded:",
+            "    advance()",
+            "solver.reset(now)",
+            "force, place = now.body_f.numpy(), now.body_q.numpy()  # views, on the CPU",
+            "velocity, joint_q, joint_qd = (",
+            "    it.numpy() for it in (now.body_qd, now.joint_q, now.joint_qd)",
+            ")",
+            *begins,
+            f"masses = {[body.mass for body in scene.bodies]!r}",
+        ),
+        step=(
+            "for number, mass in enumerate(masses):",
+            "    force[number, 0] = mass * pull_x",
+            "    force[number, 2] = mass * (pull_z + GRAVITY)",
+            *("joint_q[-1], joint_qd[-1] = base_x, base_velocity",) * moving,
+            "wp.capture_launch(recorded.graph)",
+        ),
+        pose=(
+            "theta = 2.0 * math.atan2(float(place[number, 4]), float(place[number, 6]))",
+            "rate = float(velocity[number, 4])",
+        ),
+        place="float(place[0, 0])" + " - float(place[-1, 0])" * moving,
+    )
+
+
+DOMINOES = "newton/examples/contacts/example_domino_spiral.py, newton 1.8.0"
+BELT = "newton/examples/basic/example_basic_conveyor.py, newton 1.8.0"
+
+DOCUMENTED = (
+    Citation("step", "fps = 100, sim_substeps = 10", BELT),
+    Citation("solver", "newton.solvers.SolverXPBD(model), the example's --solver by default", BELT),
+    Citation("iterations", "Defaults to 2.", "SolverXPBD, newton 1.8.0"),
+    Citation(
+        "contact",
+        "rigid_contact_relaxation 0.8, rigid_contact_con_weighting True, enable_restitution False",
+        "SolverXPBD, newton 1.8.0",
+    ),
+    Citation("damping", "angular_damping: Defaults to 0.0.", "SolverXPBD, newton 1.8.0"),
+    Citation(
+        "friction",
+        "mu: float = 1.0, of a pair the mean",
+        "ModelBuilder.ShapeConfig; xpbd/kernels.py, newton 1.8.0",
+    ),
+    Citation("gap", "contacts are made from rigid_gap 0.1 away", "ModelBuilder, newton 1.8.0"),
+    Citation(
+        "floor",
+        "is_kinematic=True on a joint; joint_q and joint_qd in each substep, then "
+        "eval_fk(..., body_flag_filter=BodyFlags.KINEMATIC)",
+        BELT,
+    ),
+    Citation("shapes", "a box on add_shape_plane(body=belt), where the solver is Kamino", BELT),
+)
+"""What the preset "naive" is documented by: the example in which a floor moves."""
+
+RECOMMENDED = (
+    Citation("step", "a smaller dt first, before all else of a solver", "simulation_tuning.rst"),
+    Citation("step", "60 fps of 10 substeps, free dominoes", DOMINOES),
+    Citation("iterations", "20, free dominoes; enable_restitution, which is left off", DOMINOES),
+)
+"""What it recommends for less penetration: a smaller step, then more iterations."""
+
+TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)
+
+OVERDONE = "both corners correct all of a penetration that they share"
+
+FACTORS = (
+    Factor(
+        "solver",
+        ("solver", "iterations"),
+        (
+            level("XPBD, 50 iterations", BOTH, solver=XPBD, iterations=50),
+            level("Kamino by PADMM", BOTH, solver="padmm", iterations=200),
+        ),
+    ),
+    factor("relaxation", level("1", (DEFAULT,), relaxation=1.0), by_default=False),
+    factor("weighting", level("no", (DEFAULT,), OVERDONE, weighting=False), by_default=False),
+    factor("baumgarte", level("0.1", baumgarte=0.1)),
+    factor("geometry", level("corners", BOTH, geometry="corners")),
+    factor("friction"),
+    moving_base("velocity", "position"),
+)
+"""What its contact can be set to."""
+
+RULES = (
+    Rule(
+        "Use Kamino, `SolverKamino` with `dynamics_solver='dvi'`, where XPBD is the example's",
+        *(DEFAULT, "solver", AS_BEST),
+        kept=True,
+    ),
+    Rule(
+        "Set Kamino's `config.constraints.gamma` to 0: it makes speed of a depth, the more of it "
+        "the shorter the step",
+        *(BEST, "baumgarte", BY_DEFAULT),
+    ),
+    Rule(
+        "Give a kinematic base its `joint_qd` beside `joint_q`: friction does not feel a place",
+        *UNMOVED_BASE,
+    ),
+)
+"""What its users should know first."""
+
+NAIVE = Preset(
+    name="naive",
+    settings=NewtonSettings(),
+    step_s=1e-3,
+    documented=DOCUMENTED,
+    frame="world",
+)
+
+ENGINE = Engine(
+    name="newton",
+    title="Newton",
+    library="newton",
+    packages=("newton", "warp-lang"),
+    install="rocking[newton]",
+    build=NewtonWorld,
+    stacks=True,
+    presets=(
+        NAIVE,
+        NAIVE.at_rest(),
+        NAIVE.recommended(*RECOMMENDED, step_s=1.0 / 600.0, iterations=20),
+        Preset(name="fixed", settings=TUNED, step=1e-3),
+    ),
+    precision=Precision.SINGLE,
+    shortest_step=3e-6,
+    script=script,
+    factors=FACTORS,
+    rules=RULES,
+    compiles=True,
+)
