@@ -44,12 +44,9 @@ def rows_of(segments: Iterable[Iterable[float]]) -> list[Segment]:
 
 
 def mean_velocity_over(rows: Ground, begin: float, finish: float) -> float:
-    """Return the base's mean velocity [m/s] between two times, by exact integration.
+    """Return the base's mean velocity [m/s] between two times [s], by exact integration.
 
-    Parameters
-    ----------
-    rows : sequence of rows (m + 1, 8), from `rows_of`
-    begin, finish : float, the times [s], of which the second may be the first
+    rows are those of `rows_of`; the second time may be the first.
     """
     first = last = segment_at(rows, begin)
     while finish > rows[last][END]:

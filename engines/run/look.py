@@ -16,8 +16,10 @@ from typing import Any, ClassVar, NamedTuple, get_type_hints
 import numpy as np
 from numpy.typing import ArrayLike
 
+from analytic.block import RigidBlock
 from analytic.kernels.forms import Kernel
 from analytic.kernels.kept import are_compiled
+from analytic.motion import SinePulse
 from engines.declaration import Stepping
 from engines.run.frame import Spread, begin_spread, see_spread
 from engines.run.ground import rows_of
@@ -134,26 +136,9 @@ def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
 
 
 class Monitor:
-    """Looks at a run.
+    """Looks at a run, in ordinary steps dt_s [s] of an engine whose velocity holds at a moment.
 
-    Parameters
-    ----------
-    scene : Scene
-        What is being simulated.
-    dt_s : float
-        Ordinary step [s].
-    stepping : Stepping
-        Who chooses the steps.
-    moment : Moment, optional
-        At which moment of a step the engine's velocity holds.
-    resolution : Resolution, optional
-        What the engine's numbers tell apart.
-
-    Attributes
-    ----------
-    runs : sequence of Run
-        What is known; numpy's records where the scene is to be looked at by compiled code.
-    lists : Lists
+    `runs` and `lists` are what is known, numpy's records where it is looked at by compiled code.
     """
 
     def __init__(
@@ -204,10 +189,7 @@ class Monitor:
         return not (spoilt or all(watch.done for watch in watches))
 
     def make_room(self, looks: int) -> None:
-        """Make room for what so many looks may write down, and one event that completes the last.
-
-        It is there for as many again.
-        """
+        """Make room for what so many looks may write down, and one event to complete the last."""
         slide, watches = self.runs[0].slide, [run.watch for run in self.runs]
         rows, events = self.lists.rows, self.lists.events
         if self._scene.times is not None:
@@ -217,12 +199,7 @@ class Monitor:
         self.lists = self.lists._replace(rows=rows, events=events)
 
     def next(self, state: ArrayLike) -> Step | None:
-        """See the state after a step; return the next step, or None where the run is over.
-
-        Parameters
-        ----------
-        state : array_like (bodies, 4), a `Pose` a row; ValueError if it has another shape
-        """
+        """See the state (bodies, 4) after a step; return the next one, or None if all is over."""
         # most engines fill the same array again
         where = self._last if state is self._last else self._checked(state)
         # plain numbers are the faster ones for Python
@@ -272,9 +249,6 @@ def pays_to_compile(scene: Scene, dt_s: float) -> bool:
 
 def compile_look() -> None:
     """Compile what looks at a run, if that has not been done on this machine."""
-    from analytic.block import RigidBlock
-    from analytic.motion import SinePulse
-
     block, pulse = RigidBlock(width=0.5, height=1.5), SinePulse(amplitude=1.0, omega=1.0)
     scene = Scene(system=block, motion=pulse)
     monitor = Monitor(scene, dt_s=1e-3)

@@ -52,18 +52,10 @@ class NotAvailableError(Exception):
 
 
 def run(use: Use) -> Response:
-    """Simulate a scene as an engine is used for it.
+    """Simulate a scene as an engine is used for it (`Engine.use`).
 
-    Parameters
-    ----------
-    use : Use
-        What an engine's `use` of the scene returns.
-
-    Returns
-    -------
-    Response
-        A run that diverges, leaves the problem or takes too long is a failed response with its
-        reason, as is one that the engine cannot do or whose library is not installed.
+    A run that diverges, leaves the problem or takes too long is a failed response with its reason,
+    as is one that the engine cannot do or whose library is not installed.
     """
     compiles = pays_to_compile(use.scene, use.dt_s)
     if not compiles:
@@ -93,13 +85,7 @@ def _run(use: Use, compiles: bool) -> Response:
 
 
 def build(use: Use) -> World:
-    """Build a scene as an engine is used for it.
-
-    Raises
-    ------
-    NotAvailableError
-        If the engine cannot do what the scene asks for, or its library is not installed.
-    """
+    """Build a scene as an engine is used for it; NotAvailableError if it cannot be."""
     if use.lacking:
         raise NotAvailableError(f"not available: {use.lacking}")
     try:

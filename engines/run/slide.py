@@ -11,18 +11,13 @@ from engines.run.watch import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_
 from engines.scene import Scene
 from engines.world import FloatArray, Pose
 
-SLIP_RATE = 3e-4
+SLIP_RATE, LEAST_SLIP = 3e-4, 1e-5
 """A box slides when it is faster than this part of sqrt(g B): what it still goes when it is slower,
-v^2/(2 mu g), is below 1e-7 B/mu."""
+v^2/(2 mu g), is below 1e-7 B/mu. A slip shorter than this part of the width is a tremor."""
 
-LEAST_SLIP = 1e-5
-"""A slip shorter than this part of the width is a tremor of the contact."""
-
-STILL_TIME = 0.05
-"""A box is at rest when it has not slid for this time, in units of sqrt(B/g)."""
-
-TREMORS = 20.0
-"""A box that trembles where it is counts as at rest after this many times `STILL_TIME`."""
+STILL_TIME, TREMORS = 0.05, 20.0
+"""A box is at rest when it has not slid for this time, in units of sqrt(B/g); one that trembles
+where it is, after this many times as long."""
 
 STOP, DISTANCE, SINCE = range(3)
 """Columns of slips: the end [s], the distance with its sign [m], the beginning [s]."""
@@ -109,16 +104,9 @@ def begin_slide(scene: Scene) -> Slide:
 
 
 def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, pose: Pose) -> None:
-    """Take in a pose at the end of a step.
+    """Take in a pose at the end [s] of a step, of which rows and slips (k, 4) are written.
 
-    Parameters
-    ----------
-    slide : Slide, updated
-    rows : ndarray (k, 4), where a history is kept: a `watch.Row` each, with place [m] and velocity
-        [m/s] for rotation and rate
-    slips : ndarray (k, >= 3), where slips are written
-    time : float, end of the step [s]
-    pose : Pose
+    A row is a `watch.Row` with place [m] and velocity [m/s] for rotation and rate.
     """
     if not math.isfinite(pose.x + pose.z + pose.theta + pose.rate):
         slide.problem = DIVERGED

@@ -15,14 +15,8 @@ from engines.world import Choice, FloatArray, Moment, Resolution, Step
 SAME_TIME = 1e-9
 """Times closer than this part of the ordinary step are the same."""
 
-WHOLE = 2.0**53
-"""All numbers from here on are whole."""
-
 PULLS = np.array([1.0, -1.0])
 """Signs of the acceleration that lift a block, about its left corner and its right one."""
-
-MOST_AT_ONCE = 256
-"""Accelerations that cost not much more together than one does."""
 
 MIDDLE, END = Moment.MIDDLE.value, Moment.END.value
 
@@ -123,16 +117,10 @@ def begin_pace(
 
 
 def advance(pace: Pace, ground: Any, choice: Choice) -> Step:
-    """Return a chosen step, and move on to its end.
+    """Return a chosen step over a ground (m + 1, 8), a row each, and move on to its end.
 
     Over the step the base has its mean velocity. In the frame "base" the block carries the body
     force -m u_g'' instead, the forcing of EQUATIONS.md, "From (1) and (2)".
-
-    Parameters
-    ----------
-    pace : Pace, moved on
-    ground : sequence of rows (m + 1, 8), from `ground.rows_of`
-    choice : Choice
     """
     dt, phase, side = choice
     begin, end = pace.time, pace.time + dt
@@ -176,7 +164,7 @@ def even(left_s: float, longest: float) -> float:
     if left_s == math.inf:
         return longest
     parts = left_s / longest * (1.0 - SAME_TIME)
-    return left_s / (math.ceil(parts) if parts < WHOLE else parts)
+    return left_s / (math.ceil(parts) if parts < 2.0**53 else parts)
 
 
 def timetable(scene: Scene, same: float) -> tuple[FloatArray, FloatArray]:
@@ -232,7 +220,7 @@ def _crossings(
     They are bracketed all at once and in as many parts as cost little more than two do.
     """
     above, case = pull * motion.acceleration(low) > onset, np.arange(len(low))
-    parts = np.linspace(0.0, 1.0, max(MOST_AT_ONCE // max(len(low), 1), 2) + 1)[1:-1]
+    parts = np.linspace(0.0, 1.0, max(256 // max(len(low), 1), 2) + 1)[1:-1]
     while (np.nextafter(low, high) < high).any():
         inside = low + parts[:, None] * (high - low)
         early = (pull * motion.acceleration(inside) > onset) == above
