@@ -2,8 +2,7 @@
 
 import inspect
 import math
-import sys
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import Any
 
@@ -74,13 +73,6 @@ def command(
     options = yours.options([source], system)[source] | ({} if step is None else {"step": step})
     name, _, preset = source.partition(":")
     scene = scene_of(system, motion, preset, start=start, duration=window, **options)
-    use = ENGINES[name].use(scene)
-    try:
-        with suppress(ImportError):  # its row says so
-            script_of(use)
-    except ValueError as error:
-        print(f"failed: {source}: not available: {error}", file=sys.stderr)
-        return 1
     questions = {"exact": {}, source: options}
     jobs = [Job(labels={}, case=case, source=each, options=of) for each, of in questions.items()]
     rows = run(jobs, measure, place_of(Computing(jobs=1, time_limit=time_limit), at_once=True))
@@ -91,6 +83,7 @@ def command(
         raise BadInputError(
             f"--engine is {engine!r}; what is exported must move there, and stays at rest"
         )
+    use = ENGINES[name].use(scene)
     texts = files(use, found, exact)
     out.mkdir(parents=True, exist_ok=True)
     with ExitStack() as places:  # the script takes its place when all others have theirs
