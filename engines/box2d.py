@@ -247,15 +247,16 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
     notes.name(world=world.world, floor=world.floors)
     notes.name_bodies(world.bodies)
     notes.listed(floors=world.floors)
-    floor = settings.floor if scene.frame == "world" else ""
-    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
-    felt = {"velocity": f"({x} - floor.position.x) / DT", "both": velocity, "position": "0.0"}
-    moves = [f"    floor.position = {x} - DT * {velocity}, floor.position.y"] * (
-        floor != "velocity"
-    )
-    moves = ["for floor in floors:", *moves, f"    floor.linearVelocity = {felt.get(floor)}, 0.0"]
+    x, velocity, moves, led = scaled("base_x", unit), scaled("base_velocity", unit), [], ""
+    if scene.frame == "world":
+        shift = f"    floor.position = {x} - DT * {velocity}, floor.position.y"
+        felt = {"velocity": f"({x} - floor.position.x) / DT", "both": velocity, "position": "0.0"}
+        moves = ["for floor in floors:", *([] if settings.floor == "velocity" else [shift])]
+        moves += [f"    floor.linearVelocity = {felt[settings.floor]}, 0.0"]
+        led = " - base_x"
+        if settings.floor == "velocity":
+            led = f" - floors[0].position.x / {unit!r}"
     step = f"world.Step({{}}, {', '.join(map(str, world.iterations))})"
-    led = f"floors[0].position.x / {unit!r}" if floor == "velocity" else "base_x"
     return Script(
         imports=("import Box2D",),
         settings=(
@@ -265,11 +266,11 @@ def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
         build=notes.lines(),
         step=(
             f"world.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
-            *(moves if floor else ()),
+            *moves,
             step.format("DT"),
         ),
         pose=("theta, rate = -bodies[number].angle, -bodies[number].angularVelocity",),
-        place=f"bodies[0].position.x / {unit!r}" + f" - {led}" * bool(floor),
+        place=f"bodies[0].position.x / {unit!r}{led}",
     )
 
 
