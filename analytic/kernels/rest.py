@@ -128,26 +128,17 @@ def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
     return 2.0 * v * (1.0 / here + law.eta / there) / (1.0 - law.eta * law.eta)
 
 
-def comes_to_rest(law: Law, side: float, now: float, later: float, wait: float) -> bool:
-    """Tell whether a train of impacts may be summed.
-
-    It must be shorter than ZENO, and the restoring accelerations must change by less than a part
-    ZENO in it, as the ground acceleration goes from `now` to `later`.
-    """
-    if not wait < ZENO:
-        return False
-    here = acceleration(law, side, now, 0.0)
-    there = acceleration(law, -side, now, 0.0)
-    change = abs(acceleration(law, side, later, 0.0) - here)
-    return change <= ZENO * min(abs(here), abs(there))
-
-
 def side_after(law: Law, side: float, v: float, now: float, later: float, wait: float) -> float:
     """Return the side of a block that leaves its base at v after an impact; 0 where it rests.
 
     The ground accelerates by `now` at the impact, and by `later` after `wait`, the `time_to_rest`.
+    A train of impacts is summed to a rest if it is shorter than ZENO, and the restoring
+    accelerations change by less than a part ZENO in it.
     """
-    if comes_to_rest(law, side, now, later, wait):
+    here = acceleration(law, side, now, 0.0)
+    there = acceleration(law, -side, now, 0.0)
+    change = abs(acceleration(law, side, later, 0.0) - here)
+    if wait < ZENO and change <= ZENO * min(abs(here), abs(there)):
         return 0.0
     if v == 0.0:
         # no velocity is left, but the ground lifts the block again at once
