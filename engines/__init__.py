@@ -31,9 +31,8 @@ It holds
   ``state`` give;
 - where it can hold several bodies, and bodies that rest on others, ``stacks``;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
-  as its own documentation shows it, each setting with its source) to the best there is, what the
-  studies try of its contact, and what its users should know first (`rules`), each with the variant
-  that shows what it is worth.
+  as its own documentation shows it, each setting with its source) to the best there is, and what
+  the studies try of its contact.
 
 The conformance tests (``tests/engines``) run over the registry and take their tolerances from the
 declaration; every study reads it, and none names an engine.

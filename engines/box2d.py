@@ -12,19 +12,13 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import (
-    AS_BEST,
     ASLEEP,
-    BEST,
-    BY_DEFAULT,
-    DEFAULT,
-    SLEEP,
     Citation,
     Engine,
     Factor,
     Help,
     Precision,
     Preset,
-    Rule,
     Stepping,
     factor,
     level,
@@ -333,23 +327,6 @@ FACTORS = (
     moving_base("both", "velocity", "position"),
 )
 
-RULES = (
-    Rule(
-        "Count in units of length that fit, here 50 a height: polygons have a skin of 0.01 "
-        "units, and speed is cut to 2 units a step",
-        *(DEFAULT, "units", AS_BEST),
-        kept=True,
-    ),
-    Rule(
-        "Lower a floor by that skin, if bodies are to touch it where it is",
-        *(BEST, "skins below", BY_DEFAULT),
-    ),
-    Rule(
-        "Forbid sleep by `body.sleepingAllowed = False`: the world's own `doSleep` reads back what "
-        "was set and does nothing, and gravity that turns wakes nothing",
-        *SLEEP,
-    ),
-)
 
 NAIVE = Preset(
     name="naive",
@@ -394,5 +371,4 @@ ENGINE = Engine(
     shortest_step=3e-6,
     script=script,
     factors=FACTORS,
-    rules=RULES,
 )

@@ -15,16 +15,13 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import (
-    BEST,
     BOTH,
     DEFAULT,
-    UNMOVED_BASE,
     Citation,
     Engine,
     Factor,
     Help,
     Preset,
-    Rule,
     Stepping,
     factor,
     level,
@@ -478,17 +475,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-RULES = (
-    Rule(
-        "Set the moment of inertia after `setMass`, by `setMomentOfInertia`: it stays 1 kg m²",
-        *(BEST, "inertia", "of 1 kg m²"),
-    ),
-    Rule(
-        "Drive a base that moves by a joint's velocity: friction does not feel one that is placed",
-        *UNMOVED_BASE,
-    ),
-)
-"""What its users should know first."""
 
 NAIVE = Preset(
     name="naive",
@@ -530,5 +516,4 @@ ENGINE = Engine(
     rest_factor=1.0,
     script=script,
     factors=FACTORS,
-    rules=RULES,
 )

@@ -105,21 +105,6 @@ def factor(setting: str, *levels: Level, name: str = "", **options: Any) -> Fact
     return Factor(name or setting.replace("_", " "), (setting,), levels, **options)
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
-    """What a user should do, and the variant (as of a study of contacts) that shows its worth.
-
-    words are an order in the library's own words; kept says that the variant keeps the rule, and
-    the preset does not.
-    """
-
-    words: str
-    preset: str
-    factor: str
-    level: str
-    kept: bool = False
-
-
 BY_POSITION, MOVING_BASE = "by position alone", "moving base"
 """Name of the factor of how a base that moves is moved, and of the way that no friction feels."""
 
@@ -150,8 +135,6 @@ ASLEEP = Factor(
 )
 """A block that was put to sleep, which tuned presets forbid (setting `sleeping`)."""
 
-SLEEP, UNMOVED_BASE = (BEST, "sleeping", "on"), (BEST, MOVING_BASE, BY_POSITION)
-"""What rules about a block asleep, and about a base without a velocity, are shown by."""
 
 Builder = Callable[[Scene, Any, float], World]
 """``(scene, settings, dt_s)`` -> the built scene, in the ordinary steps dt_s [s]."""
@@ -318,8 +301,6 @@ class Engine:
         steps dt_s [s]. Without it an engine can be neither exported nor quoted.
     factors : tuple of Factor
         What its contact can be set to.
-    rules : tuple of Rule
-        What its users should know first.
     compiles : bool
         Whether its library, or its adapter's loop, is compiled when it is first used on a machine:
         that is then done once before a study's cases, and their time limit does not count it.
@@ -340,7 +321,6 @@ class Engine:
     rest_factor: float = REST_FACTOR
     script: Callable[[Scene, Any, float], Script] | None = None
     factors: tuple[Factor, ...] = ()
-    rules: tuple[Rule, ...] = ()
     compiles: bool = False
 
     @property

@@ -17,16 +17,12 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import (
-    BEST,
     BOTH,
-    BY_DEFAULT,
     DEFAULT,
-    UNMOVED_BASE,
     Citation,
     Engine,
     Factor,
     Preset,
-    Rule,
     Stepping,
     factor,
     level,
@@ -547,25 +543,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-RULES = (
-    Rule(
-        "Give each contact a `point_stiffness` of m/dt²: its own is 1e6 N/m, whatever the mass",
-        *(BEST, "stiffness", BY_DEFAULT),
-    ),
-    Rule(
-        "Put spheres at the corners: of a box a half-space sees one point, the deepest",
-        *(BEST, "geometry", "planar box"),
-    ),
-    Rule(
-        "Keep `dissipation` below 1e3/(p R): friction goes by the last step's normal force",
-        *(BEST, "dissipation", "1e4"),
-    ),
-    Rule(
-        "Drive a base that moves, `set_controller_gains`: friction does not feel one just placed",
-        *UNMOVED_BASE,
-    ),
-)
-"""What its users should know first."""
 
 NAIVE = Preset(
     name="naive",
@@ -599,5 +576,4 @@ ENGINE = Engine(
     ),
     script=script,
     factors=FACTORS,
-    rules=RULES,
 )

@@ -15,18 +15,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engines.declaration import (
-    AS_BEST,
-    BEST,
     BOTH,
-    BY_DEFAULT,
     DEFAULT,
-    UNMOVED_BASE,
     Citation,
     Engine,
     Factor,
     Precision,
     Preset,
-    Rule,
     factor,
     level,
     moving_base,
@@ -432,23 +427,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-RULES = (
-    Rule(
-        "Use Kamino, `SolverKamino` with `dynamics_solver='dvi'`, where XPBD is the example's",
-        *(DEFAULT, "solver", AS_BEST),
-        kept=True,
-    ),
-    Rule(
-        "Set Kamino's `config.constraints.gamma` to 0: it makes speed of a depth, the more of it "
-        "the shorter the step",
-        *(BEST, "baumgarte", BY_DEFAULT),
-    ),
-    Rule(
-        "Give a kinematic base its `joint_qd` beside `joint_q`: friction does not feel a place",
-        *UNMOVED_BASE,
-    ),
-)
-"""What its users should know first."""
 
 NAIVE = Preset(
     name="naive",
@@ -476,6 +454,5 @@ ENGINE = Engine(
     shortest_step=3e-6,
     script=script,
     factors=FACTORS,
-    rules=RULES,
     compiles=True,
 )

@@ -13,20 +13,14 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import (
-    BEST,
     BOTH,
-    BY_DEFAULT,
     DEFAULT,
-    OWN_STEP,
-    OWN_STEPS,
-    UNMOVED_BASE,
     Citation,
     Engine,
     Factor,
     Help,
     Precision,
     Preset,
-    Rule,
     Stepping,
     factor,
     level,
@@ -444,27 +438,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-RULES = (
-    Rule("Take shorter steps than 1/100 s", *(DEFAULT, OWN_STEPS, OWN_STEP)),
-    Rule(
-        "Give a block small balls for corners, not a box",
-        *(BEST, "geometry", BY_DEFAULT),
-    ),
-    Rule(
-        "Shrink `contact_offset`: a corner that is held before it strikes does so in two steps",
-        *(BEST, "contact offset", BY_DEFAULT),
-    ),
-    Rule(
-        "Switch TGS off, `enable_tgs=False`, in short steps: below (ulp/2) iterations/dt, ulp that "
-        "of the place in the world, a body stands still",
-        *(BEST, "tgs", "TGS"),
-    ),
-    Rule(
-        "Move a base by `set_kinematic_target`: friction does not feel one whose pose is set",
-        *UNMOVED_BASE,
-    ),
-)
-"""What its users should know first."""
 
 NAIVE = Preset(
     name="naive",
@@ -510,5 +483,4 @@ ENGINE = Engine(
     shortest_step=3e-6,
     script=script,
     factors=FACTORS,
-    rules=RULES,
 )

@@ -13,16 +13,11 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import (
-    DEFAULT,
-    LEFT_OUT,
-    OWN_STEP,
-    OWN_STEPS,
     Citation,
     Engine,
     Factor,
     Help,
     Preset,
-    Rule,
     Stepping,
     factor,
     level,
@@ -313,21 +308,6 @@ FACTORS = (
     moving_base("both", "velocity", "position"),
 )
 
-RULES = (
-    Rule(
-        "Keep the step of `space.step` the same: the impulses it starts from are scaled by the "
-        "ratio of two steps",
-        *("landing", LEFT_OUT, "positions"),
-    ),
-    Rule(
-        "Step finer than 0.02 s: positions move by the velocities of the step before",
-        *(DEFAULT, OWN_STEPS, OWN_STEP),
-    ),
-    Rule(
-        "Leave `collision_slop` above 0: at 0 contacts come and go",
-        *(DEFAULT, "slop", "0"),
-    ),
-)
 
 NAIVE = Preset(
     name="naive",
@@ -368,5 +348,4 @@ ENGINE = Engine(
     ),
     script=script,
     factors=FACTORS,
-    rules=RULES,
 )

@@ -14,18 +14,14 @@ import numpy as np
 
 from engines.declaration import (
     ASLEEP,
-    BEST,
     BOTH,
-    BY_DEFAULT,
     DEFAULT,
-    SLEEP,
     Citation,
     Engine,
     Factor,
     Help,
     Precision,
     Preset,
-    Rule,
     Stepping,
     factor,
     level,
@@ -500,25 +496,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-RULES = (
-    Rule(
-        "Leave the translation out of the plane free: locked, with two rotations, no friction acts",
-        *(BEST, "locks", "y locked"),
-    ),
-    Rule(
-        "Switch `contact_recycling` off: what turns slowly slides off an old contact",
-        *(BEST, "contact recycling", BY_DEFAULT),
-    ),
-    Rule(
-        "Forbid sleep, `can_sleep(False)`: gravity that changes wakes nothing",
-        *SLEEP,
-    ),
-    Rule(
-        "Stiffen contacts, `contact_softness`: they have 30 Hz, and 60 Hz on what does not move",
-        *(BEST, "contact spring", BY_DEFAULT),
-    ),
-)
-"""What its users should know first."""
 
 NAIVE = Preset(
     name="naive",
@@ -562,5 +539,4 @@ ENGINE = Engine(
     shortest_step=3e-6,
     script=script,
     factors=FACTORS,
-    rules=RULES,
 )

@@ -6,13 +6,11 @@ from typing import Any
 from engines.declaration import (
     BOTH,
     DEFAULT,
-    UNMOVED_BASE,
     Citation,
     Engine,
     Factor,
     Help,
     Preset,
-    Rule,
     Stepping,
     factor,
     level,
@@ -164,18 +162,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-RULES = (
-    Rule(
-        "Give contacts a `solref` that follows the step: it is 0.02 s, and soft",
-        *(DEFAULT, "reference", "2 dt 1"),
-        kept=True,
-    ),
-    Rule(
-        "Give a base that is moved its velocity, `surfacevel`: friction does not feel a mocap move",
-        *UNMOVED_BASE,
-    ),
-)
-"""What its users should know first."""
 
 NAIVE = Preset(
     name="naive",
@@ -227,6 +213,5 @@ ENGINE = Engine(
     core=True,
     script=script,
     factors=FACTORS,
-    rules=RULES,
     compiles=True,
 )

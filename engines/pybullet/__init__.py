@@ -4,17 +4,14 @@ from dataclasses import replace
 from typing import Any
 
 from engines.declaration import (
-    AS_BEST,
     BEST,
     BOTH,
-    BY_DEFAULT,
     DEFAULT,
     Citation,
     Engine,
     Factor,
     Help,
     Preset,
-    Rule,
     Stepping,
     factor,
     level,
@@ -173,23 +170,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-RULES = (
-    Rule(
-        "Turn drag off, `changeDynamics(linearDamping=0, angularDamping=0)`: it is 0.04",
-        *(DEFAULT, "damping", AS_BEST),
-        kept=True,
-    ),
-    Rule(
-        "Give a body made of small shapes its own `localInertiaDiagonal`: it is that of the shapes",
-        *(BEST, "inertia", BY_DEFAULT),
-    ),
-    Rule(
-        "Build a box as a box: a convex mesh is held by another algorithm",
-        *(DEFAULT, "geometry", "hull on plane"),
-    ),
-)
-"""What its users should know first."""
-
 
 NAIVE = Preset(
     name="naive",
@@ -230,5 +210,4 @@ ENGINE = Engine(
     core=True,
     script=script,
     factors=FACTORS,
-    rules=RULES,
 )

@@ -202,22 +202,3 @@ def _prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
     }
     equal = _line_of(lines, engine=engine, preset=BEST, factor="")
     return words | ({} if equal is None else {"STEPS": _errors(equal, "max_error")})
-
-
-def rules(published: Path) -> Iterator[tuple[str, str, str, str]]:
-    """Yield the engine and each rule that helps, and the errors without and with it.
-
-    One helps if fewer outcomes are wrong with it, or as many and the median error is smaller.
-    """
-    lines = _variants(published)
-    for engine, rule in ((name, rule) for name in OWN for rule in ENGINES[name].rules):
-        level = {"level": rule.level} if rule.level else {}
-        plain = _line_of(lines, engine=engine, preset=rule.preset, factor="")
-        other = _line_of(lines, engine=engine, preset=rule.preset, factor=rule.factor, **level)
-        if plain is None or other is None:
-            continue
-        pair = (plain, other) if rule.kept else (other, plain)
-        wrong, kept = ((it["failed"] + it["wrong"], it["median_error"]) for it in pair)
-        if kept < wrong:
-            errors = [_errors(it, "median_error", "max_error") for it in pair]
-            yield TITLES[engine], rule.words, errors[0], errors[1]
