@@ -1,11 +1,13 @@
-"""What a user imports has an example, and the examples give what they print."""
+"""What a user imports has an example that gives what it prints; what is cited stands there."""
 
 import doctest
 import importlib
 import inspect
+import re
 from enum import Enum
 
 import pytest
+from commanding import ROOT
 
 TOLD = {"History", "Impact", "Modes", "Response", "Motion", "Rocker"}
 """What is answered, and what an argument must have: nobody makes these."""
@@ -27,3 +29,12 @@ def test_an_example_gives_what_it_prints(package, name):
     )
     assert found and found[0].examples
     assert doctest.DocTestRunner().run(found[0]).failed == 0
+
+
+def test_every_heading_that_is_cited_exists():
+    page = (ROOT / "analytic/EQUATIONS.md").read_text()
+    headings = set(re.findall(r"^(?:## |\*\*)([^*\n]+?)\.?(?:\*\*|$)", page, re.MULTILINE))
+    sources = [path for name in ("analytic", "engines") for path in (ROOT / name).rglob("*.py")]
+    named = re.compile(r'EQUATIONS\.md(?:,\s+"([^"]+)")?')
+    cited = {heading for path in sources for heading in named.findall(path.read_text())}
+    assert cited and {" ".join(heading.split()) for heading in cited} <= headings

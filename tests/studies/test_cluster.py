@@ -1,14 +1,18 @@
 """Jobs on a Dask cluster: a real scheduler and real workers, each a process of its own."""
 
+import json
 import os
 import signal
+import subprocess
+import sys
 import threading
-from contextlib import ExitStack
+import time
+from contextlib import ExitStack, contextmanager
 
 import pandas as pd
 import pytest
-from commanding import refused
-from dask_station import scheduler, wait_for_workers, working
+from commanding import ROOT, refused
+from distributed import Client
 from given import BLOCK, FULL_SINE
 
 from engines.registry import FURTHER
@@ -21,6 +25,47 @@ from studies.sources.registry import announce
 
 pytestmark = pytest.mark.processes
 CASE = Question(system=BLOCK, motion=FULL_SINE)
+KNOWN = os.pathsep.join(map(str, (ROOT / "tests", ROOT / "tests/plugin", ROOT)))
+DASK = [sys.executable, "-m", "dask"]
+PATIENCE_S = 120.0
+
+
+@contextmanager
+def scheduler(folder):
+    """Start a scheduler; yield its address."""
+    place = folder / "scheduler.json"
+    options = ["--port", "0", "--no-dashboard", "--scheduler-file", str(place)]
+    with started("scheduler", *options):
+        while not (place.exists() and place.read_text().endswith("}")):
+            time.sleep(0.05)
+        yield json.loads(place.read_text())["address"]
+
+
+@contextmanager
+def working(address, nanny="--no-nanny", **environment):
+    """Start a worker; yield its process."""
+    with started(
+        "worker", address, nanny, "--nthreads", "1", "--no-dashboard", **environment
+    ) as it:
+        yield it
+
+
+@contextmanager
+def started(*words, **environment):
+    """Start a process of Dask, and end it afterwards."""
+    known = {**os.environ, "PYTHONPATH": KNOWN, **environment}
+    process = subprocess.Popen([*DASK, *words], env=known, stderr=subprocess.DEVNULL)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def wait_for_workers(address, count):
+    """Wait until a scheduler has so many workers."""
+    with Client(address, set_as_default=False) as client:
+        client.wait_for_workers(count, timeout=PATIENCE_S)
 
 
 def jobs_of(*sources):

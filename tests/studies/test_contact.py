@@ -4,7 +4,6 @@ import math
 
 import pandas as pd
 import pytest
-from commanding import refused
 
 from engines import ENGINES, installed_engines
 from engines.declaration import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
@@ -103,20 +102,3 @@ def test_one_variant_of_a_block_and_of_a_frame():
         contact.newton_e(block["velocity_ratio"], jobs[0].case.system.alpha)
     )
     assert frame["outcome"] == "rocked" and math.isnan(frame["newton_e"])
-
-
-@pytest.mark.parametrize(
-    ("options", "parts"),
-    [
-        (["--engines", "mujuco"], ["mujuco", "mujoco"]),
-        (["--engines", "mujoco", "mujoco"], ["twice"]),
-        (["--scene", "frames"], ["--scene", "frames", "block"]),
-        (["--scene", "frame", "--engines", "moreau"], ["--scene", "moreau"]),
-        (["--time-limit", "0"], ["--time-limit"]),
-        (["--quickly"], ["--quickly"]),
-        (["--sources", "exact"], ["--sources"]),
-    ],
-)
-def test_what_cannot_be_asked_is_refused(capsys, tmp_path, options, parts):
-    refused(capsys, ["contact", "--out", tmp_path / "new", *options], *parts)
-    assert not (tmp_path / "new").exists()

@@ -57,12 +57,6 @@ def distance(one, other, vision):
     return np.linalg.norm(seen(one, vision) - seen(other, vision))
 
 
-def test_white_is_far_from_black_and_red_is_near_green_without_a_cone():
-    assert distance("#ffffff", "#000000", "all three cones") == pytest.approx(100.0, abs=0.1)
-    assert distance("#c00000", "#5a5a00", "all three cones") > 50.0
-    assert distance("#c00000", "#5a5a00", "protanopia") < 25.0
-
-
 @pytest.mark.parametrize("vision", VISIONS)
 def test_sources_are_told_apart_by_colour_line_or_marker(vision):
     looks = {name: (style.colour, style.line) for name, style in STYLES.items()}

@@ -6,7 +6,7 @@ import sys
 
 import commanding
 import pytest
-from commanding import CASE, refused, run_scripts
+from commanding import CASE, compared, refused, run_scripts
 from declared import run
 from given import BLOCK, PULSE
 
@@ -146,3 +146,15 @@ def test_a_file_that_cannot_be_written_leaves_no_part_of_a_script(tmp_path, monk
     with pytest.raises(UnicodeEncodeError):
         rocking(["export", *CASE, "--engine", "pymunk", "--out", str(tmp_path / "scene")])
     assert list((tmp_path / "scene").iterdir()) == []
+
+
+def test_a_scene_is_exported_with_a_friction_and_a_step(tmp_path, capsys):
+    own = ("--friction", "0.8", "--dt", "0.002")
+    row = compared(capsys, *CASE, *own, "--sources", "mujoco:naive")[1]["mujoco:naive"]
+    place = ["--engine", "mujoco:naive", "--out", str(tmp_path / "scene")]
+    assert rocking(["export", *CASE, *own, *place]) == 0
+    told = float(re.search(r"to expect: (\S+)", capsys.readouterr().out)[1])
+    assert told == pytest.approx(row["peak_ratio"], rel=1e-11)
+    script = tmp_path / "scene" / "block.py"
+    assert run_scripts("mujoco", script).returncode == 0 and "DT = 0.002 " in script.read_text()
+    assert 'friction="0.8 ' in (tmp_path / "scene" / "block.xml").read_text()

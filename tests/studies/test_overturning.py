@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import refused
 
 from analytic import peak_ratios, simulate
 from studies import overturning
@@ -102,20 +101,3 @@ def test_each_kind_of_wrong_outcome_on_planes_is_counted(exact):
     assert line["close"] == line["cases"] - 6 == found["rests"]["close"].sum()
     assert found["parts"]["p90_error"].max() < 0.21
     assert "MuJoCo" in overturning.finding(found)
-
-
-@pytest.mark.parametrize(
-    ("options", "parts"),
-    [
-        (["--sources", "rk4"], ("--sources", "'rk4'", "engines")),
-        (["--low", "5", "--high", "2"], ("--low is 5", "smaller")),
-        (["--high", "1e4"], ("--high is 10000", "0.001 to 1000")),
-        (["--onsets", "1"], ("--onsets is 1", "1.001 to 1000")),
-        (["--columns", "1000000000"], ("--columns is 1000000000", "4000")),
-        (["--columns", "0"], ("--columns", "positive whole number")),
-    ],
-)
-def test_what_cannot_be_mapped_is_refused_in_a_line(options, parts, tmp_path, capsys):
-    out = tmp_path / "out"
-    refused(capsys, ["overturning", "--out", out, "--sources", "exact", *options], *parts)
-    assert not out.exists()

@@ -3,7 +3,6 @@
 import math
 import re
 import shutil
-import tomllib
 
 import pandas as pd
 import pytest
@@ -11,7 +10,6 @@ from commanding import PAGES, PROSE, PUBLISHED_PAGES, ROOT, refused
 
 from engines.declaration import BEST, DEFAULT, LEFT_OUT
 from studies.page import facts, readme
-from studies.page.readme import table
 
 PUBLISHED = ROOT / readme.PUBLISHED
 TABLES = ("studies/published/columns.csv",)
@@ -86,20 +84,6 @@ def run_of(first, rows, computed, duration_s):
     return {"first": first, "rows": rows, "computed": computed, "duration_s": duration_s}
 
 
-def test_both_commands_of_ci_are_there_once():
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    for name in ("the main job", "the tests"):
-        assert len(re.findall(f"<!-- {name} -->\n```sh\npython3.11 -m venv .*\n```\n", text)) == 1
-
-
-def test_the_engine_of_the_readme_is_as_short_as_it_says():
-    """tests/studies/test_score.py puts it to the cases."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert "a class of thirty lines, [my_engine.py](tests/plugin/my_engine.py)" in text
-    code = (ROOT / "tests" / "plugin" / "my_engine.py").read_text(encoding="utf-8")
-    assert len(code[code.index("import ") :].splitlines()) <= 30
-
-
 def test_every_link_of_a_page_leads_somewhere():
     assert {PUBLISHED / name for name in PUBLISHED_PAGES} == set(PUBLISHED.glob("*.md"))
     for path in (ROOT / name for name in (*PROSE, "analytic/EQUATIONS.md")):
@@ -124,10 +108,6 @@ def slug(head):
     return re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-")
 
 
-def test_a_bar_does_not_end_a_cell():
-    assert table(("a", "b"), [("|θ|", "1")]).splitlines()[-1] == "| ∣θ∣ | 1 |"
-
-
 def test_the_first_picture_is_of_the_case_that_it_names():
     """Figure 5-b of the paper: exact 0.3852, and Housner's linearization overturns."""
     lines = readme.summary(pd.read_csv(PUBLISHED / "hero" / "hero.csv")).set_index("source")
@@ -138,12 +118,3 @@ def test_the_first_picture_is_of_the_case_that_it_names():
 
 def test_a_folder_without_tables_is_refused(tmp_path, capsys):
     refused(capsys, ["readme", "--root", tmp_path], "--root")
-
-
-def test_the_project_s_files_name_what_there_is():
-    """Forms and the workflow can be read, and the citation and the changes are of this version."""
-    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
-    folder = ROOT / ".github"
-    assert f"## {version}\n" in (folder / "CHANGELOG.md").read_text(encoding="utf-8")
-    assert f"\nversion: {version}\n" in (folder / "CITATION.cff").read_text(encoding="utf-8")
-    assert "run: .ci/run" in (folder / "workflows" / "ci.yml").read_text(encoding="utf-8")

@@ -34,6 +34,12 @@ sweep --time-limit 1e150 --out DIR | --time-limit is '1e150' | up to 1e9
 blocks list.csv --record X.AT2 --scale 2 2 --out DIR | --scale names 2.0 twice
 blocks list.csv --record X.AT2 --scale --out DIR | --scale
 
+# slips of a unit
+compare --width 300 --height 1.5 PULSE | --width is 300; it must be at most 200 m | 0.3 for 300
+export --width 0.5 --height 200.001 PULSE --out DIR --engine dart | --height 0.200001 for 200.001
+animate --width 200.001 --height 1.5 PULSE --out film.gif | --width 0.200001 for 200.001 mm
+advise --width 0.5 --height 300 | --height is 300; it must be at most 200 m | 0.3 for 300 mm
+
 # who is asked
 compare CASE --sources mujoco:best | --sources | 'mujoco:best' | naive
 compare CASE --sources mujoco:fixd | 'mujoco:fixd', perhaps 'mujoco:fixed'; it must be one of mujoco
@@ -105,6 +111,29 @@ compare CASE --scene slide --friction 0 | --friction is 0
 compare CASE --scene slide --friction 0.2 --plot x.png | only where something rocks
 compare CASE --scene slide --friction 0.2 --sources dop853 | 'dop853' cannot be asked so
 compare CASE --scene bridge | --scene is 'bridge'; it must be among block, frame, slide
+
+# what else a study asks
+overturning --out DIR --sources rk4 | --sources | 'rk4' | engines
+overturning --out DIR --sources exact --low 5 --high 2 | --low is 5 | smaller
+overturning --out DIR --sources exact --high 1e4 | --high is 10000 | 0.001 to 1000
+overturning --out DIR --sources exact --onsets 1 | --onsets is 1 | 1.001 to 1000
+overturning --out DIR --sources exact --columns 1000000000 | --columns is 1000000000 | 4000
+overturning --out DIR --sources exact --columns 0 | --columns | positive whole number
+contact --out DIR --engines mujoco mujoco | twice
+contact --out DIR --scene frames | --scene | frames | block
+contact --out DIR --scene frame --engines moreau | --scene | moreau
+contact --out DIR --quickly | --quickly
+restitution --out DIR --engines moreau | moreau | pybullet, mujoco
+restitution --out DIR --engines drake | drake | no coefficient
+restitution --out DIR --quick | --quick
+validate --out DIR --tests 3 | --tests is 3; it may be given only with --halves
+validate --out DIR --halves --sources exact | 'exact'; with --halves it must be an engine
+validate --out DIR --halves --sources drake | steps that can be halved
+validate --out DIR --sources exact --step 0.1 | --sources must name a solver or an engine
+validate --out DIR --dt 0.01 --step 0.1 --sources mujoco:fixed | --dt is 0.01 and --step is 0.1
+validate --out DIR --cases 1000000000 | GB of memory
+validate --out DIR --scene slide | among block, frame
+validate --out DIR --seed -1 | --seed is '-1'
 
 # where the results go
 compare CASE --plot a.txt | --plot is 'a.txt' | .png

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import refused
 from scipy.integrate import solve_ivp
 
 from analytic.response import Response
@@ -135,16 +134,3 @@ def test_the_published_lines_follow_from_the_published_strikes():
     assert (best < plain).all()  # the second way is the better one
     for part in ("7 of 8", f"{best.max():.2g}"):
         assert part in restitution.finding(tables)
-
-
-@pytest.mark.parametrize(
-    ("options", "parts"),
-    [
-        (["--engines", "moreau"], ["moreau", "pybullet, mujoco"]),
-        (["--engines", "drake"], ["drake", "no coefficient"]),
-        (["--quick"], ["--quick"]),
-    ],
-)
-def test_what_cannot_be_asked_is_refused(capsys, tmp_path, options, parts):
-    refused(capsys, ["restitution", "--out", tmp_path / "new", *options], *parts)
-    assert not (tmp_path / "new").exists()

@@ -1,24 +1,21 @@
 """One engine on one page: registered, at a place, or nothing but what builds its world."""
 
 import json
-import re
 from collections import Counter
 
 import pandas as pd
 import pytest
-from commanding import ROOT, refused
+from commanding import refused
 
 from analytic import simulate
 from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Stepping
 from studies import respond, score
-from studies.__main__ import COMMANDS, run
-from studies.kit.app import make_app
+from studies.__main__ import run
 from studies.kit.run import run as measured
 from studies.score import (
     CASE,
     EXTREMES,
-    MEASURES,
     STUDY,
     SWEEP,
     measured_moment,
@@ -142,15 +139,6 @@ def test_what_is_no_earlier_result_is_refused(tmp_path, capsys, monkeypatch):
         refused(capsys, [*asked, "--against", path], "--against", "schema 1")
     path.write_text(json.dumps(kept))
     assert read(path, engine) == kept
-
-
-def test_the_workflow_to_paste_says_what_is_taken():
-    guide = (ROOT / "studies" / "GUIDE.md").read_text(encoding="utf-8")
-    workflow = re.search("```yaml\n(.*?)```", guide, re.DOTALL)[1]
-    (line,) = re.findall("- run: rocking (.*)", workflow)
-    _, bound, ignored = make_app(COMMANDS).parse_args(line, exit_on_error=False)
-    assert (bound.args, ignored) == ((MINE,), {})
-    assert all(f"`{measure}`" in guide for measure in MEASURES.values())
 
 
 def test_the_best_preset_is_the_one_that_is_right_most_often(monkeypatch):

@@ -6,18 +6,15 @@ from itertools import islice
 import numpy as np
 import pandas as pd
 import pytest
-from commanding import refused
 from given import BLOCK, PULSE
 
 from analytic import frame_demands, simulate
 from engines.scene import BEAM_DEPTH, SPACING
 from studies import respond
-from studies.__main__ import run as run_command
 from studies.cases.drawn import (
     FRICTION,
     KEPT,
     LEAST_NORMAL,
-    RandomCase,
     census,
     draw,
     everything,
@@ -230,46 +227,3 @@ def test_cases_that_test_come_first_each_with_its_half():
     assert list(rows["half"]) == [0, 1] * 3 and list(rows["set"]) == [TEST] * 2 + [CALIBRATE] * 4
     # of second order: half the step has a fourth of the error, the difference is three fourths
     assert tables["estimates"]["over"].to_numpy() == pytest.approx([4.0 / 3.0] * 3, rel=0.1)
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ("--tests 3", "--tests is 3; it may be given only with --halves"),
-        ("--halves --sources exact", "--sources is 'exact'; with --halves it must be an engine"),
-        ("--halves --sources drake", "steps that can be halved"),
-        ("--sources exact --step 0.1", "--sources must name a solver or an engine"),
-        ("--dt 0.01 --step 0.1 --sources mujoco:fixed", "--dt is 0.01 and --step is 0.1"),
-        ("--cases 1000000000", "GB of memory"),
-        ("--cases 0", "--cases is '0'"),
-        ("--scene slide", "among block, frame"),
-        ("--seed -1", "--seed is '-1'"),
-    ],
-)
-def test_refusals(options, words, tmp_path, capsys):
-    refused(capsys, ["validate", "--out", tmp_path / "new", *options.split()], words)
-    assert not (tmp_path / "new").exists()
-
-
-def test_a_folder_of_one_form_is_refused_to_another(tmp_path, capsys):
-    few = ["validate", "--cases", "2", "--jobs", "1", "--sources", "mujoco", "--out", tmp_path]
-    assert run_command([str(word) for word in few]) == 0
-    capsys.readouterr()
-    refused(capsys, [*few, "--halves"], str(tmp_path), "also holds results")
-    refused(capsys, [*few, "--seed", "2"], str(tmp_path), "folder")
-
-
-@pytest.mark.slow
-def test_estimates_are_made_with_a_friction_and_a_step(tmp_path):
-    few = ["--cases", "1", "--tests", "1", "--sources", "pymunk:naive"]
-    own = ["--friction", "0.9", "--dt", "0.003"]
-    assert run_command(["validate", "--halves", *few, *own, "--out", str(tmp_path / "a")]) == 0
-    rows = pd.read_csv(tmp_path / "a" / "estimate.csv", dtype={"message": str})
-    assert len(rows) == 4
-    for row in rows.to_dict("records"):
-        names = ("case", "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p")
-        case = RandomCase(**{name: row[name] for name in names})
-        step = 0.003 * case.block.p / (2.0 if row["half"] else 1.0)
-        answer = respond("pymunk:naive", case.block, case.motion, friction=0.9, step=step)
-        assert row["peak_ratio"] == answer.peak_ratio and row["steps"] == answer.steps
-    assert run_command(["validate", "--halves", *few, "--out", str(tmp_path / "a")]) == 2
