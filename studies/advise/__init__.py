@@ -13,7 +13,7 @@ from cyclopts import Parameter
 
 from analytic.block import RigidBlock
 from engines import ENGINES
-from engines.declaration import Preset, Stepping
+from engines.declaration import Preset
 from studies.advise import symptoms as seen
 from studies.advise.symptoms import settings_in_words
 from studies.kit.arguments import (
@@ -27,7 +27,7 @@ from studies.kit.arguments import (
     several,
 )
 from studies.kit.jobs import Row
-from studies.kit.options import Running, check_written
+from studies.kit.options import Running
 from studies.kit.say import WIDTH, as_text, duration
 from studies.kit.scene_options import Height, Width, block_of
 from studies.kit.store import check
@@ -56,7 +56,6 @@ def command(
     error: Annotated[tuple[Positive, ...], several] = TARGETS,
     engines: Annotated[Engines | None, Parameter(name=("--engines", "--engine"))] = None,
     symptoms: bool = False,
-    dt: Positive | None = None,
     friction: NotNegative | None = None,
     width: Width = 0.5,
     height: Height = 1.5,
@@ -79,32 +78,22 @@ def command(
     symptoms
         Instead, what users see (a block creeps, sinks, bounces, tips too early, ...): its size with
         the library's defaults, with the one setting that helps most, and with all that is tuned.
-    dt
-        Your step [s], instead of errors: which error each preset with equal steps keeps with it.
-        Settings are written out for it; by default, beside --symptoms, for the library's own.
     friction
         Coefficient of friction for which settings are written out: some, as MuJoCo's impratio,
         belong to it. By default 0.8, beside --symptoms the library's own.
     out
-        Folder for the table and its figure; none by default.
+        Folder for the table and the figure of advice; none by default.
     """
     refuse_repeats("--error", error)
-    check_written(dt)
-    beside = {"error": None if error is TARGETS else error[0]}
     if symptoms:
-        refuse_given(beside, "only without --symptoms")
-    elif dt is not None:
-        refuse_given({**beside, "out": out}, "only without --dt")
+        refuse_given({"error": None if error is TARGETS else error[0]}, "only without --symptoms")
     check(PUBLISHED, seen.TABLES if symptoms else TABLES, "the published tables")
     asked = engines or tuple(known.along_steps(PUBLISHED, list(ENGINES))["engine"].unique())
     block, note = block_of(width, height), OWN_FRICTION
     with as_bad_input():
         if symptoms:
             tables = {"symptoms": seen.find(asked)}
-            written, note = seen.write(tables["symptoms"], block, dt, friction), seen.HALVES
-        elif dt is not None:
-            tables = {"step": find_errors(asked, block, dt)}
-            written = write(tables["step"], block, friction)
+            written, note = seen.write(tables["symptoms"], block, friction), seen.HALVES
         else:
             tables = {"advice": find(asked, error, block)}
             written, note = write(tables["advice"], block, friction), f"{STEPPED} {OUTDATED} {note}"
@@ -113,7 +102,7 @@ def command(
     if out is None:
         print(as_text(finding(tables), shown(tables)))
     else:
-        how = {"dt": dt, "friction": friction} if symptoms else {"error": error}
+        how = {"friction": friction} if symptoms else {"error": error}
         size = {"width": width, "height": height}
         study = replace(STUDY, name="symptoms" if symptoms else "advise", tabulate=lambda _: tables)
         study.carry_out(out, [], Running(), engines=asked, **size, **how)
@@ -180,27 +169,6 @@ def preset_of(line: Mapping[Any, Any] | pd.Series[Any]) -> Preset:
     return ENGINES[str(line["engine"])].preset(str(line["preset"]))
 
 
-def find_errors(engines: Sequence[str], block: RigidBlock, dt_s: float) -> pd.DataFrame:
-    """Return for each preset with equal steps the largest errors at the next coarser step [s].
-
-    Columns: engine, preset, dt_s; value, its p dt; coarser, p dt of the finest published step that
-    is no finer, nan where there is none; and for both sets of cases the largest error of the peak
-    at it and every finer published step, inf where an outcome is wrong.
-    """
-    table, value = pd.read_csv(PUBLISHED / known.LADDER), dt_s * block.p
-    table["max_error"] = table["max_error"].where(table["failed"] == 0, math.inf)
-    lines = []
-    for engine, use in ((name, use) for name in engines for use in uses_of(name)):
-        if use.stepping is Stepping.FIXED:
-            mine = table[table["method"] == f"{engine} {use.name}"]
-            at = mine.loc[mine["value"] >= value * (1.0 - 1e-9), "value"].min()
-            worst = mine[mine["value"] <= at].groupby("set")["max_error"].max()
-            line = {"engine": engine, "preset": use.name, "dt_s": dt_s, "value": value}
-            sets = worst.reindex(["typical", "near overturning"])
-            lines.append({**line, "coarser": at, **sets, "message": ""})
-    return pd.DataFrame(lines)
-
-
 def write(lines: pd.DataFrame, block: RigidBlock, friction: float | None) -> Iterator[str]:
     """Yield each setting of some lines in the library's words; ValueError of a bad friction."""
     at = 0.8 if friction is None else friction
@@ -210,7 +178,7 @@ def write(lines: pd.DataFrame, block: RigidBlock, friction: float | None) -> Ite
         here = "" if math.isnan(line["dt_s"]) else f", DT = {line['dt_s']:.6g} s"
         title = f"{ENGINES[line['engine']].title}, {preset.title}"
         options = {"friction": at, "frame": "base", **options_at(preset, value)}
-        parts = settings_in_words(line["engine"], preset.name, block, None, **options)
+        parts = settings_in_words(line["engine"], preset.name, block, **options)
         if helps := "; ".join(each.value for each in preset.helped_by):
             parts += (f"and at every step, by no setting of the library: {helps}",)
         text = indent("\n".join(parts), "  ")
@@ -218,12 +186,9 @@ def write(lines: pd.DataFrame, block: RigidBlock, friction: float | None) -> Ite
 
 
 def finding(tables: Tables) -> str:
-    """Say which engine keeps the smallest error at the least cost, or what a step or setting is."""
+    """Say which engine keeps the smallest error at the least cost, or what one setting halves."""
     if "symptoms" in tables:
         return seen.finding(tables["symptoms"])
-    if "step" in tables:
-        line = tables["step"].iloc[0]
-        return f"A step of {line['dt_s']:g} s is p dt = {line['value']:.3g} for your block."
     lines = tables["advice"]
     kept = lines[lines["message"] == ""]
     if kept.empty:
@@ -239,21 +204,12 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     """Return the cheapest settings that keep each error, and what no setting keeps."""
     if "symptoms" in tables:
         return seen.shown(tables["symptoms"])
-    if "step" in tables:
-        title = (
-            "Largest error of the peak in published cases at the next coarser published p dt and "
-            "every finer one,\nfor presets with equal steps (inf: an outcome is wrong)"
-        )
-        return {title: tables["step"].drop(columns=["dt_s", "value", "message"])}
     lines, use = tables["advice"], ["target", "engine", "preset"]
     kept = lines[lines["message"] == ""]
-    own = kept[[not preset_of(line).helped_by for _, line in kept.iterrows()]]
     return {
-        f"The least cost of each error, with {settings}": (
-            among.sort_values("wall_s").drop_duplicates("target").sort_index()
-        )[[*use, "value", "wall_s", "runs"]]
-        for settings, among in (("any setting", kept), ("a library's own settings alone", own))
-    } | {
+        "The least cost of each error": (
+            kept.sort_values("wall_s").drop_duplicates("target").sort_index()
+        )[[*use, "value", "wall_s", "runs"]],
         "The cheapest setting that keeps each error with every finer one (value: p dt, or an "
         "engine's own accuracy;\ndt_s for your block), and how many random cases are off at this "
         "very setting": kept.drop(columns=["random_calm_off", "message"]),
@@ -264,11 +220,11 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
 
 
 def figures(tables: Tables) -> Mapping[str, Figure]:
-    """Draw the time of a case with each preset that keeps an error, or the size of symptoms."""
-    from studies.drawing.advise import draw_advice, draw_symptoms
+    """Draw the time of a case with each preset that keeps an error."""
+    from studies.drawing.advise import draw_advice
 
-    drawings = {"advice": draw_advice, "symptoms": draw_symptoms}
-    return {name: drawings[name](table, finding(tables)) for name, table in tables.items()}
+    lines = tables.get("advice")
+    return {} if lines is None else {"advice": draw_advice(lines, finding(tables))}
 
 
 STUDY = Study(
@@ -285,8 +241,5 @@ STUDY = Study(
         "advice": "Time of a case with each preset that keeps an error with every finer step, a "
         "panel for each error, a row for each engine; at the points their steps, p dt, or the "
         "accuracy of an engine's own.",
-        "symptoms": "What users of an engine see, a panel for each symptom, a row for each engine, "
-        "its size on a logarithmic scale: as documented, with the one setting that helps most, "
-        "with all of a contact tuned at equal steps, and with steps that land on impacts.",
     },
 )

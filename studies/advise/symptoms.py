@@ -132,29 +132,27 @@ HALVES = (
 
 
 def settings_in_words(
-    engine: str, preset: str, block: RigidBlock, dt_s: float | None, **options: Any
+    engine: str, preset: str, block: RigidBlock, **options: Any
 ) -> tuple[str, ...]:
-    """Return what a preset sets for a block, in the library's words, at its step or another [s]."""
+    """Return what a preset sets for a block, in the library's words."""
     declared = ENGINES[engine]
     if declared.script is None or not declared.installed:
         return (f"{declared.title} writes out its settings where it is installed",)
     scene = scene_of(block, SinePulse(amplitude=1.0, omega=1.0), preset, **options)
     use = declared.use(scene)
-    return declared.script(use.scene, use.settings, dt_s or use.dt_s).settings
+    return declared.script(use.scene, use.settings, use.dt_s).settings
 
 
-def write(
-    lines: pd.DataFrame, block: RigidBlock, dt_s: float | None, friction: float | None
-) -> Iterator[str]:
+def write(lines: pd.DataFrame, block: RigidBlock, friction: float | None) -> Iterator[str]:
     """Yield what each setting that helps sets and the defaults do not, in the library's words.
 
-    Settings are quoted for a block, a step [s] and a friction, both by default the library's.
+    Settings are quoted for a block and a friction, by default the library's.
     """
     for (engine, setting), group in lines[lines["setting"] != ""].groupby(["engine", "setting"]):
         known = {f"{each.factor}: {each.level}": each.settings for each in variants(str(engine))
                  if each.preset == DEFAULT}  # fmt: skip
         usual, changed = (
-            settings_in_words(str(engine), DEFAULT, block, dt_s, friction=friction, settings=own)
+            settings_in_words(str(engine), DEFAULT, block, friction=friction, settings=own)
             for own in ({}, known[str(setting)])
         )
         text = "\n".join(line for line in changed if line not in usual)

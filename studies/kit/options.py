@@ -148,9 +148,3 @@ def refuse_excess(asked: str, held: float) -> None:
     if held > (there := min(limits)):
         needs = f"that needs about {held / 1e9:.0f} GB of memory"
         raise BadInputError(f"{asked}; {needs}, and at most {there / 1e9:.0f} GB are there")
-
-
-def check_written(dt: float | None) -> None:
-    """Refuse a step [s] for which no settings are written out."""
-    if dt is not None and not 1e-6 <= dt <= 1.0:
-        raise BadInputError(f"--dt is {dt:g}; it must be from 1e-06 to 1 s")

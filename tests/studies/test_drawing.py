@@ -129,7 +129,7 @@ def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
     assert height < width * lines["engine"].nunique() / 3.0
 
 
-FOLDERS = {"advise": "symptoms"}
+FOLDERS = {"advise": "advice"}
 
 
 @cache

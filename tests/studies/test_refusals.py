@@ -24,9 +24,6 @@ compare CASE --dt 0 --sources rk4 | --dt is '0'; it must be a positive
 compare BLOCK --amplitude 1e308 --omega 6.2832 | --amplitude | inf | finite
 compare CASE --pulse quarter | --pulse is 'quarter' | half-sine
 compare CASE --accuracy none | --accuracy is 'none' | tight
-advise --engine mujoco --dt 1,5 | --dt is '1,5'; it must be a positive finite number
-advise --engine mujoco --dt | --dt
-advise --symptoms --engines mujoco --dt 0.1 0.2 | 0.2
 sweep --figure 6.5 --out DIR | --figure is '6.5' | 6, 7, 8, 9
 sweep --figure 6 6 --out DIR | --figure names 6 twice | once
 histories --figure 3 --out DIR | --figure is '3' | 2, 4, 5
@@ -92,10 +89,6 @@ compare CASE --friction 99 --sources pybullet | friction is 99.0; it must be fro
 compare CASE --dt 1e-12 --sources rk4 | --dt is 1e-12; it must be at least 3.6
 compare CASE --dt 0.01 --step 0.1 --sources rk4 | --dt is 0.01 and --step is 0.1; give one or the
 advise --engine pybullet --friction 99 | friction is 99.0; it must be from 0
-advise --engine mujoco --dt 2 | --dt is 2; it must be from 1e-06 to 1 s
-advise --symptoms --engines mujoco --dt 1e-9 | --dt is 1e-09; it must be from 1e-06 to 1 s
-advise --engine mujoco --dt 0.002 --error 0.1 | --error is 0.1; it may be given only without
-advise --engine mujoco --dt 0.002 --out DIR | --out is DIR; it may be given only without --dt
 
 # other scenes, exported or shown
 export CASE --out DIR --engine bullet | --engine is 'bullet', perhaps 'pybullet'; it must be
