@@ -97,7 +97,7 @@ class PymunkWorld:
         for shape in (*self.corners, *self.floors):
             shape.friction = constant(root, f"math.sqrt({float(settings.friction)!r})")
         self.space.add(self.base, *self.bodies, *self.corners, *self.floors)
-        if self._floor != "velocity":
+        if self._floor not in ("", "velocity"):
             self.base.position_func = stay
         for body in self.bodies if settings.positions else ():
             body.position_func = stay
@@ -242,7 +242,10 @@ def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
         under += " + DT * base.velocity.x"
     place = f"bodies[0].position.x{under}"
     return Script(
-        imports=("import pymunk", *("stay = lambda body, dt: None",) * (floor != "velocity")),
+        imports=(
+            "import pymunk",
+            *("stay = lambda body, dt: None",) * (floor not in ("", "velocity")),
+        ),
         settings=(
             f"space.step({dt_s!r})",
             *notes.quoted("iterations", "collision_", ".Circle(", ".Poly(", ".filter", ".friction"),
