@@ -1,10 +1,10 @@
 """A comparison as text: the case, what its exact solution needs, and a table of the sources."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from analytic.frame import RockingFrame
 from analytic.motion import Motion, SinePulse, Still
@@ -13,7 +13,7 @@ from analytic.start import strongest
 from engines.scene import System
 from studies.cases.paper import PULSES
 from studies.kit.jobs import Question, Row
-from studies.kit.say import duration, in_columns, number
+from studies.kit.say import aligned, duration, number
 
 OF_THE_CASE = ("kappa", "sensitivity", "min_normal", "friction_needed")
 SHOWN = (
@@ -34,12 +34,6 @@ def table_text(
     else:
         words = f"θ = {theta / system.alpha:.6g} α, θ' = {rate / (system.alpha * system.p):.6g} αp"
     facts = [f"{name} {number(records[0][name])}" for name in OF_THE_CASE]
-    table = pd.DataFrame(records).reindex(columns=SHOWN)
-    table["wall_s"] = table["wall_s"].map(duration)
-    table["slips"] = table["slips"].map(_slips, na_action="ignore")
-    peak = table.pop("peak_ratio") * (turned * system.alpha if degrees else 1.0)
-    if not isinstance(system, SlidingBlock):
-        table.insert(2, "peak [°]" if degrees else "peak_ratio", peak.map("{:.6f}".format))
     return "\n".join(
         [
             _standing(system, degrees),
@@ -48,7 +42,7 @@ def table_text(
             *[f"start   {words}"] * (case.start != (0.0, 0.0)),
             *[f"exact   {', '.join(facts)}"] * (not isinstance(system, SlidingBlock)),
             "",
-            in_columns(table.dropna(axis="columns", how="all")),
+            _table(records, system, degrees),
             *(
                 f"{record['source']}: {record['message']}"
                 for record in records
@@ -56,6 +50,26 @@ def table_text(
             ),
         ]
     )
+
+
+def _table(records: Sequence[Row], system: System, degrees: bool) -> str:
+    """Return a line for each source, of the columns in which one has a number or a word."""
+    unit = math.degrees(system.alpha) if degrees else 1.0
+    words: dict[str, Callable[[Any], str]] = {"wall_s": duration, "slips": _slips}
+    words["peak_ratio"] = lambda ratio: f"{unit * ratio:.6f}"
+
+    def cell(name: str, value: Any) -> str:
+        return words.get(name, number)(value) if known(value) else "-"
+
+    def known(value: Any) -> bool:
+        return value is not None and value == value
+
+    names = [name for name in SHOWN if any(known(record.get(name)) for record in records)]
+    if isinstance(system, SlidingBlock):
+        names.remove("peak_ratio")
+    rows = [[cell(name, record.get(name)) for name in names] for record in records]
+    heads = ["peak [°]" if degrees and name == "peak_ratio" else name for name in names]
+    return aligned([heads, *rows], [name not in ("source", "outcome", "slips") for name in names])
 
 
 def _standing(system: System, degrees: bool) -> str:

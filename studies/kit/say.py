@@ -153,13 +153,16 @@ def in_columns(table: pd.DataFrame) -> str:
     """Return a table as aligned text, words to the left and numbers to the right."""
     numeric = [kind.kind in "biuf" for kind in table.dtypes]
     rows = [list(map(str, table.columns)), *table.head(SHOWN).map(number).to_numpy().tolist()]
+    more = [f"and {len(table) - SHOWN} more rows"] if len(table) > SHOWN else []
+    return "\n".join([aligned(rows, numeric), *more])
+
+
+def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool]) -> str:
+    """Return rows of cells as text, each column to the left or to the right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    sides = [">" if right else "<" for right in numeric]
-    form = "  ".join(f"{{:{side}{width}}}" for side, width in zip(sides, widths, strict=True))
-    lines = [form.format(*row).rstrip() for row in rows]
-    if len(table) > SHOWN:
-        lines.append(f"and {len(table) - SHOWN} more rows")
-    return "\n".join(lines)
+    sides = zip(right, widths, strict=True)
+    form = "  ".join(f"{{:{'>' if to_right else '<'}{width}}}" for to_right, width in sides)
+    return "\n".join(form.format(*row).rstrip() for row in rows)
 
 
 def as_text(finding: str, tables: Mapping[str, pd.DataFrame]) -> str:
