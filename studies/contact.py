@@ -19,9 +19,8 @@ from engines import ENGINES, core_engines
 from engines.declaration import BEST, BY_DEFAULT, DEFAULT, OWN_STEPS, Stepping
 from engines.scene import Scene
 from studies.cases.drawn import Drawn, RandomCase, draw
-from studies.cases.paper import Case, free_rocking_window
+from studies.cases.paper import Case, chosen_cases, free_rocking_window
 from studies.cases.refusal import BadInputError
-from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
 from studies.cases.variants import Variant, variants
 from studies.kit.arguments import Engines, one_of
 from studies.kit.jobs import Job, Question, Row, ask, summary
@@ -142,7 +141,7 @@ def measure(job: Job) -> Row:
     least = 0.1 * system.p * system.alpha  # slower impacts show no velocity ratio
     strong = [each.ratio for each in response.impacts if abs(each.velocity_before) > least]
     known = strong and response.outcome is not Outcome.FAILED
-    ratio = float(np.median(strong[:COMPARED_IMPACTS])) if known else math.nan
+    ratio = float(np.median(strong[:3])) if known else math.nan
     framed = isinstance(system, RockingFrame)
     return {
         **summary(response),

@@ -74,7 +74,7 @@ MEASURES = {
 """Column of a table -> what a result calls it."""
 KNOWN = {
     SWEEP: ("peak_ratio",),
-    STEPS: ("peak_ratio", "error", "impact_error", "energy_drift"),
+    STEPS: ("peak_ratio", "error"),
     EXTREMES: ("peak_ratio", "error", "energy_growth", "slip_widths"),
 }
 """Columns that a table has though none of its numbers may be known."""

@@ -9,31 +9,28 @@ from dataclasses import asdict, fields, replace
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pandas as pd
 
 from analytic import RigidBlock, simulate
 from analytic.response import Outcome, Response
 from engines import ENGINES
-from studies.cases.paper import Case, free_rocking_window
-from studies.cases.selection import COMPARED_IMPACTS, chosen_cases
+from studies.cases.paper import Case, chosen_cases, free_rocking_window
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.options import Running
 from studies.kit.say import duration, part
 from studies.kit.study import Study, Tables
 from studies.measures.costs import EXACT, STEPPED, best_of, costs_of, exact_cost, method_title
-from studies.measures.energy import SAMPLES, energy_drift
 from studies.measures.finer import cheapest_below, joint
 from studies.measures.presets import engine_of
 from studies.measures.published import TARGETS
 from studies.precision.methods import PLAIN, known_methods, methods_of
-from studies.precision.scene import CASE, has, omissions, put_back, reference, references, share
+from studies.precision.scene import CASE, has, omissions, put_back, share
 from studies.sources.registry import core_sources
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ALONG, SHARES, SCENES, REFERENCE = "precision", "shares", "scenes", "reference"
+ALONG, SHARES, SCENES = "precision", "shares", "scenes"
 """The tables whose rows are measured."""
 TYPICAL, NEAR, ALL = "typical", "near overturning", "all"
 """The sets of cases, and both together."""
@@ -54,8 +51,7 @@ def jobs(sources: Iterable[str], quick: bool) -> list[Job]:
             for case in cases:
                 block, motion = case.block, case.motion
                 window = free_rocking_window(block, motion)
-                times = np.linspace(0.0, window, SAMPLES)
-                asked = Question(system=block, motion=motion, duration=window, times=times)
+                asked = Question(system=block, motion=motion, duration=window)
                 labels = {"table": ALONG, "method": name, "value": value, "set": kind}
                 labels |= {**asdict(case), "budget_s": brief_s}
                 options = method.options_at(value)
@@ -67,29 +63,25 @@ def jobs(sources: Iterable[str], quick: bool) -> list[Job]:
         for engine, (left_out, options) in product(engines, omissions().items())
         if has(ENGINES[engine], **options)
     ]
-    if "exact" in names:
-        alone += [{"table": REFERENCE, "scene": name} for name in references()]
     asked = Question(system=CASE.block, motion=CASE.motion)
     return found + [
-        Job(labels={**it, "budget_s": long_s}, case=asked, source=it.get("engine", "exact"))
-        for it in alone
+        Job(labels={**it, "budget_s": long_s}, case=asked, source=it["engine"]) for it in alone
     ]
 
 
 def measure(job: Job) -> Row:
     """Return what a job's table has of it."""
-    of = {ALONG: along, SHARES: share, SCENES: put_back, REFERENCE: reference}
-    return of[job.labels["table"]](job)
+    return {ALONG: along, SHARES: share, SCENES: put_back}[job.labels["table"]](job)
 
 
 def along(job: Job) -> Row:
-    """Run a job once with all records, then time it without any: to its peak only.
+    """Run a job over its whole window once, then time it to its peak alone.
 
     A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
     """
-    recorded, block, motion = ask(job), job.case.system, job.case.motion
+    whole, block, case = ask(job), job.case.system, job.case
     assert isinstance(block, RigidBlock)
-    plain = replace(job, case=replace(job.case, duration=None, times=None))
+    plain = replace(job, case=replace(case, duration=None))
 
     def timed() -> Response:
         start = time.perf_counter()
@@ -98,48 +90,40 @@ def along(job: Job) -> Row:
         return replace(response, setup_s=time.perf_counter() - start - response.wall_s)
 
     best, runs = best_of(timed, job.labels["budget_s"])
-    found, late, exact = recorded, math.nan, math.nan
+    found, exact = whole, math.nan
     if best.outcome is Outcome.FAILED:
         found = best
-    elif recorded.outcome is not Outcome.FAILED:
+    elif whole.outcome is not Outcome.FAILED:
         timed_alone = ("outcome", "peak_ratio", "steps", "wall_s")
-        found = replace(recorded, **{name: getattr(best, name) for name in timed_alone})
-        right = simulate(block, motion, duration=job.case.duration)
-        late, exact = impact_error(recorded, right, block.p), right.peak_ratio
+        found = replace(whole, **{name: getattr(best, name) for name in timed_alone})
+        exact = simulate(block, case.motion, duration=case.duration).peak_ratio
     return {
         **summary(found),
         "setup_s": round(best.setup_s, 9),
         "runs": runs,
         "error": abs(found.peak_ratio / exact - 1.0),
-        "impact_error": late,
-        "energy_drift": energy_drift(block, motion, recorded),
     }
 
 
-def impact_error(found: Response, exact: Response, p: float) -> float:
-    """Return the largest error of the first impact times [1/p]; inf where one is missing."""
-    mine, right = (
-        [impact.time * p for impact in response.impacts[:COMPARED_IMPACTS]]
-        for response in (found, exact)
-    )
-    if len(mine) < len(right):
-        return math.inf
-    return max((abs(a - b) for a, b in zip(mine, right, strict=False)), default=0.0)
-
-
-CASES = [item.name for item in fields(Case)]
 COLUMNS = {
     ALONG: [
-        *("method", "value", "set", *CASES, "budget_s", "source", "outcome", "peak_ratio"),
-        *("impacts", "steps", "wall_s", "message", "setup_s", "runs"),
-        *("error", "impact_error", "energy_drift"),
+        *(
+            "method",
+            "value",
+            "set",
+            *(item.name for item in fields(Case)),
+            "budget_s",
+            "source",
+            "outcome",
+            "peak_ratio",
+        ),
+        *("impacts", "steps", "wall_s", "message", "setup_s", "runs", "error"),
     ],
     SHARES: ["engine", "step_s", "engine_s"],
     SCENES: [
         *("engine", "scene", "outcome", "wall_s", "runs", "steps"),
         *("step_s", "plain_s", "setup_s", "error", "message"),
     ],
-    REFERENCE: ["scene", "wall_s"],
 }
 
 
@@ -155,26 +139,16 @@ def tabulate(rows: pd.DataFrame) -> Tables:
 
 def work_precision(rows: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each set, method and setting: errors over the cases, cost of one case."""
-    finest = rows.groupby(["method", *CASES, "set"])["peak_ratio"].transform("last")
-    failed = rows["outcome"] == Outcome.FAILED.value
-    own = (rows["peak_ratio"] / finest - 1.0).abs().mask(failed)
-    length = [Case(**{name: row[name] for name in CASES}).motion.duration for row in
-              rows[CASES].to_dict("records")]  # fmt: skip
-    groups = rows.assign(own_error=own, failed=failed, pulse_s=length).groupby(
-        ["set", "method", "value"], sort=False
-    )
-    table = groups.agg(
+    rows = rows.assign(failed=rows["outcome"] == Outcome.FAILED.value)
+    groups = rows.groupby(["set", "method", "value"], sort=False)
+    return groups.agg(
         cases=("error", "size"),
         failed=("failed", "sum"),
         median_error=("error", "median"),
         max_error=("error", "max"),
-        **{name: (name, "median") for name in ("own_error", "impact_error", "energy_drift")},
         **{name: (name, "mean") for name in ("steps", "wall_s", "setup_s")},
         runs=("runs", "min"),
-        pulse_s=("pulse_s", "mean"),
     ).reset_index()
-    table["real_time_factor"] = table.pop("pulse_s") / table["wall_s"]
-    return table
 
 
 def engines_of(table: pd.DataFrame) -> pd.DataFrame:
@@ -245,13 +219,10 @@ def finding(tables: Tables) -> str:
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     """Return what each error costs, where the time of a step goes, and what a scene costs."""
-    table, scenes, shares, reference = (
-        tables[name] for name in ("work-precision", SCENES, SHARES, REFERENCE)
-    )
+    table, scenes, shares = (tables[name] for name in ("work-precision", SCENES, SHARES))
     typical = table[table["set"] == TYPICAL]
     costs = over_targets(typical, "wall_s")
     costs[costs.columns[1:]] /= exact_cost(typical)
-    counts = reference["scene"].str.extract(r"^(\d+) cases", expand=False).astype(float).fillna(1.0)
     found = {
         "The cheapest setting of an engine below an error, as with every finer one": pd.DataFrame(
             {"below": target, "cases": cases, **best}
@@ -266,9 +237,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         ),
         "What a scene leaves out, put back one at a time; cost: run time over the scene as it is": (
             scenes.assign(cost=costs_of(scenes))[scenes["steps"] > 0].drop(columns="message")
-        ),
-        "What the exact solution leaves out; case_us: microseconds a case": reference.assign(
-            case_us=1e6 * reference["wall_s"] / counts
         ),
     }
     return {title: table for title, table in found.items() if len(table)}

@@ -1,62 +1,41 @@
-"""What a scene costs: the shares of a step, what it leaves out, and the exact solution."""
+"""What a scene costs: the shares of a step, and what it leaves out."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import partial
 from pkgutil import resolve_name
 from timeit import repeat
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
-from analytic import peak_ratios, simulate
+from analytic import simulate
 from analytic.response import Outcome, Response
 from engines.declaration import Engine
-from studies.cases.paper import HISTORIES, SWEEPS, free_rocking_window, sweep_cases
+from studies.cases.paper import HISTORIES, free_rocking_window
 from studies.kit.jobs import Job, Row, ask, summary
 from studies.measures.costs import best_of, best_of_each
-from studies.measures.differences import posed_cases
 
-GRID = np.linspace(0.0, 1.0, 1001)
-"""Of a recorded history, over its duration."""
 CASE = HISTORIES[5][1]
 """Figure 5-b, of which scenes are timed: one impact before the peak, κ about 5."""
 
 
 def omissions() -> dict[str, dict[str, Any]]:
     """Return the options that put back what a scene leaves out, by the name of that; none first."""
-    window = free_rocking_window(CASE.block, CASE.motion)
+    window, grid = free_rocking_window(CASE.block, CASE.motion), np.linspace(0.0, 1.0, 1001)
     return {
         "as it is": {},
         "free body instead of planar": {"settings": {"planar": False}},
         "full box instead of corners": {"settings": {"geometry": "box"}},
         "base moving in the world": {"frame": "world"},
         "8/p of free rocking after the pulse": {"duration": window},
-        "the same, recorded as a history": {"duration": window, "times": window * GRID},
+        "the same, recorded as a history": {"duration": window, "times": window * grid},
         "steps all equal": {"preset": "fixed"},
-    }
-
-
-def references() -> dict[str, Callable[[], object]]:
-    """Return what the exact solution is timed with: one response, or the whole sweep."""
-    block, motion = CASE.block, CASE.motion
-    window = free_rocking_window(block, motion)
-    watched = partial(simulate, block, motion, duration=window)
-    cases = [case for case in sweep_cases(SWEEPS) if case.width_m == 0.5]
-    alike = posed_cases(pd.DataFrame([asdict(case) for case in cases]))
-    return {
-        "one response, to its peak": partial(simulate, block, motion),
-        "8/p of free rocking after the pulse": watched,
-        "the same, recorded as a history": partial(watched, times=window * GRID),
-        "480 cases of the sweep": partial(peak_ratios, *alike),
-        "960 cases, half of them copies by similarity": partial(peak_ratios, *np.tile(alike, 2)),
-        "480 cases, one by one in Python": lambda: [simulate(c.block, c.motion) for c in cases],
     }
 
 
@@ -146,9 +125,3 @@ def put_back(job: Job) -> Row:
         "setup_s": found.setup_s,
         "error": found.peak_ratio / exact - 1.0,
     }
-
-
-def reference(job: Job) -> Row:
-    """Time what the exact solution leaves out: one response, or the whole sweep."""
-    wall_s = min(repeat(references()[str(job.labels["scene"])], number=1, repeat=30))
-    return {**summary(ask(job)), "wall_s": wall_s}

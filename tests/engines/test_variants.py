@@ -14,7 +14,7 @@ from engines.mujoco import TUNED
 from engines.mujoco.build import MujocoSettings
 from engines.pybullet.build import BulletSettings, BulletWorld
 from engines.run.run import build
-from studies.cases.selection import chosen_cases
+from studies.cases.paper import chosen_cases
 from studies.cases.variants import variants
 
 CASE = chosen_cases(True)["typical"][3]

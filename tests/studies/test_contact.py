@@ -8,7 +8,7 @@ import pytest
 from engines import ENGINES, installed_engines
 from engines.declaration import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
 from studies import contact
-from studies.cases.selection import chosen_cases
+from studies.cases.paper import chosen_cases
 from studies.cases.variants import STILL, variants
 from studies.kit.run import run
 
