@@ -327,7 +327,6 @@ FACTORS = (
     moving_base("both", "velocity", "position"),
 )
 
-
 NAIVE = Preset(
     name="naive",
     settings=Box2DSettings(),

@@ -475,7 +475,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-
 NAIVE = Preset(
     name="naive",
     settings=DartSettings(),

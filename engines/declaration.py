@@ -105,10 +105,6 @@ def factor(setting: str, *levels: Level, name: str = "", **options: Any) -> Fact
     return Factor(name or setting.replace("_", " "), (setting,), levels, **options)
 
 
-BY_POSITION, MOVING_BASE = "by position alone", "moving base"
-"""Name of the factor of how a base that moves is moved, and of the way that no friction feels."""
-
-
 def moving_base(*floors: str) -> Factor:
     """Return the factor of a base that moves in the world, in ways of the setting `floor`.
 
@@ -117,14 +113,14 @@ def moving_base(*floors: str) -> Factor:
     unmoved = "a base without a velocity: friction does not feel it"
     levels = [
         Level(
-            name=BY_POSITION if floor == "position" else f"by {floor}",
+            name="by position alone" if floor == "position" else f"by {floor}",
             settings={"floor": floor},
             trap=unmoved if floor == "position" else "",
             scene={"frame": "world"},
         )
         for floor in floors
     ]
-    return Factor(MOVING_BASE, ("floor",), tuple(levels), by_default=False)
+    return Factor("moving base", ("floor",), tuple(levels), by_default=False)
 
 
 ASLEEP = Factor(
@@ -134,7 +130,6 @@ ASLEEP = Factor(
     by_default=False,
 )
 """A block that was put to sleep, which tuned presets forbid (setting `sleeping`)."""
-
 
 Builder = Callable[[Scene, Any, float], World]
 """``(scene, settings, dt_s)`` -> the built scene, in the ordinary steps dt_s [s]."""

@@ -543,7 +543,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-
 NAIVE = Preset(
     name="naive",
     settings=DrakeSettings(),

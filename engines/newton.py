@@ -427,7 +427,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-
 NAIVE = Preset(
     name="naive",
     settings=NewtonSettings(),

@@ -438,7 +438,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-
 NAIVE = Preset(
     name="naive",
     settings=PhysxSettings(),

@@ -311,7 +311,6 @@ FACTORS = (
     moving_base("both", "velocity", "position"),
 )
 
-
 NAIVE = Preset(
     name="naive",
     settings=PymunkSettings(),

@@ -162,7 +162,6 @@ FACTORS = (
 )
 """What its contact can be set to."""
 
-
 NAIVE = Preset(
     name="naive",
     settings=MujocoSettings(),

@@ -159,28 +159,17 @@ def beside_own() -> str:
     return "; ".join(said)
 
 
-def _variants(published: Path) -> pd.DataFrame:
-    return table_in(published / "contact", "variants", "factor", "level", "trap")
-
-
-def _line_of(lines: pd.DataFrame, **labels: str) -> Line | None:
-    """Return the first line that has some labels; None where there is none."""
-    mine = lines[(lines[list(labels)] == pd.Series(labels)).all(axis=1)]
-    return None if mine.empty else mine.iloc[0]
-
-
-def _errors(line: Line, *columns: str) -> str:
-    """Return errors of a variant, and how many of its cases are wrong."""
+def _error(line: Line) -> str:
+    """Return the largest error of a variant, and how many of its cases are wrong."""
     if line["failed"] == line["cases"]:
         return "no result"
-    errors = ", at most ".join(part(line[name]) for name in columns)
     broken = int(line["failed"]) + int(line["wrong"])
-    return errors + (f", {broken} of {line['cases']} wrong" if broken else "")
+    return part(line["max_error"]) + (f", {broken} of {line['cases']} wrong" if broken else "")
 
 
 def helps(published: Path) -> Table:
     """Return the largest error of landing in each engine, and without each thing it does for it."""
-    lines = _variants(published)
+    lines = table_in(published / "contact", "variants", "factor", "level", "trap")
     engines = [name for name in OWN if ENGINES[name].best.stepping is Stepping.LANDING]
     price = {name: _prices(lines, name) for name in engines}
     helped = {name: ENGINES[name].best.helped_by for name in engines}
@@ -195,10 +184,10 @@ def helps(published: Path) -> Table:
 
 
 def _prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:
-    mine = lines[(lines["engine"] == engine) & (lines["preset"] == ENGINES[engine].best.name)]
-    words = {
-        line["level"].upper() if line["factor"] else "": _errors(line, "max_error")
-        for line in mine[mine["factor"].isin(["", LEFT_OUT])].to_dict("records")
-    }
-    equal = _line_of(lines, engine=engine, preset=BEST, factor="")
-    return words | ({} if equal is None else {"STEPS": _errors(equal, "max_error")})
+    words = {}
+    for line in lines[lines["engine"] == engine].to_dict("records"):
+        if line["preset"] == ENGINES[engine].best.name and line["factor"] in ("", LEFT_OUT):
+            words[line["level"].upper() if line["factor"] else ""] = _error(line)
+        elif line["preset"] == BEST and not line["factor"]:
+            words["STEPS"] = _error(line)
+    return words
