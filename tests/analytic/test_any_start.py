@@ -6,14 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from given import BLOCK, ONSET, pulse
+from given import BLOCK, pulse
 from independent import peak_and_impacts
 
 from analytic import (
     MODELS,
     Impact,
     Outcome,
-    Record,
     RigidBlock,
     Still,
     conditioning,
@@ -90,54 +89,6 @@ def test_a_released_block_falls_in_its_quarter_period_and_decays(model, tilt):
             assert next_one.time - one.time == pytest.approx(period, abs=1e-11)
 
 
-@pytest.mark.parametrize("source", SOURCES)
-def test_free_rocking_is_followed_for_the_duration(source):
-    start, times = (0.6 * BLOCK.alpha, 0.0), np.linspace(0.0, 3.0, 301)
-    exact = simulate(BLOCK, Still(), start=start, duration=3.0, times=times)
-    response = respond(source, BLOCK, Still(), start=start, duration=3.0, times=times)
-    assert response.history.time[-1] == 3.0
-    assert response.history.theta[0] == start[0]
-    assert len(response.impacts) == len(exact.impacts)
-    # the paper's contact tolerance ends each swing 1e-6 rad early or late
-    assert np.abs(response.history.theta - exact.history.theta).max() < 2e-3 * BLOCK.alpha
-    assert respond(source, BLOCK, Still(), start=start).peak_ratio == pytest.approx(0.6, rel=1e-9)
-    none = respond(source, BLOCK, Still(), duration=2.0)
-    assert (none.outcome, none.peak_ratio) == (Outcome.AT_REST, 0.0)
-
-
-def test_a_response_may_be_taken_up_where_it_was_left():
-    """The state after half a record, and the rest of the record, make the same response."""
-    samples = ONSET * np.array([0.0, 1.6, 0.4, -1.9, -0.3, 1.2, 0.2, -0.4, 0.1, 0.0])
-    whole = Record(dt=0.2, samples=samples)
-    times = np.linspace(0.0, 3.0, 16)
-    for model in MODELS:
-        expected = simulate(BLOCK, whole, model, duration=3.0, times=times).history
-        theta, rate = expected.theta[4], expected.velocity[4]
-        rest = Record(dt=0.2, samples=samples[4:])
-        found = simulate(
-            BLOCK, rest, model, (theta, rate), duration=2.2, times=np.linspace(0.0, 2.2, 12)
-        ).history
-        assert theta != 0.0
-        # the state left is one of some twenty roundings, amplified by a few impacts
-        np.testing.assert_allclose(found.theta, expected.theta[4:], rtol=0, atol=1e-12)
-
-
-@pytest.mark.parametrize("model", MODELS)
-def test_beyond_the_critical_rotation_a_push_may_bring_it_back(model):
-    saddle = MODELS[model].law(BLOCK.alpha, 0.5).saddle
-    tilted = (1.1 * saddle, 0.0)
-    falling = simulate(BLOCK, Still(), model, tilted)
-    assert falling.outcome is Outcome.OVERTURNED
-    push = Record(dt=0.3, samples=[0.5 * ONSET, 0.5 * ONSET])
-    response = simulate(BLOCK, push, model, tilted)
-    assert response.outcome is Outcome.ROCKED
-    assert response.crossed
-    assert response.peak_ratio == pytest.approx(1.1 * saddle / BLOCK.alpha, rel=1e-14)
-    assert simulate(BLOCK, push.scaled(-1.0), model, tilted).outcome is Outcome.OVERTURNED
-    returning = simulate(BLOCK, Still(), model, (1.1 * saddle, -0.5 * BLOCK.alpha * BLOCK.p))
-    assert returning.outcome is Outcome.ROCKED
-
-
 @pytest.mark.parametrize("model", MODELS)
 def test_free_energy_decides_at_the_separatrix(model):
     """Upright, the rate that just overturns is that of the barrier."""
@@ -162,15 +113,6 @@ def test_a_motion_without_length_is_sampled_from_its_start_to_the_last_of_the_ti
     only = simulate(BLOCK, Still(), model, **asked | {"times": [0.0]})
     assert only.history.theta.tolist() == [-0.1]
     assert only.peak_ratio == pytest.approx(response.peak_ratio, rel=1e-12)
-
-
-def test_a_jump_beyond_the_onset_lifts_at_once():
-    for phase in (0.5 * math.pi, -0.5 * math.pi, 2.0):
-        lifted = abs(math.sin(phase)) > 1.0 / 1.2
-        response = simulate(BLOCK, pulse(1.2, 1.5, 2, phase=phase), times=[0.05])
-        assert (response.uplifts[0] == 0.0) == lifted
-        if lifted:
-            assert math.copysign(1.0, response.history.theta[0]) == -math.copysign(1.0, phase)
 
 
 @pytest.mark.parametrize("source", SOURCES)

@@ -154,12 +154,6 @@ def test_of_a_block_that_is_pushed_onto_its_base_it_is_that_of_the_energy():
     assert sensitivity(BLOCK, Still(), start=(0.9 * BLOCK.alpha, 0.0)) == 0.0
 
 
-def test_a_ratio_of_one_moves_down_alone():
-    bouncing = RigidBlock(width=0.5, height=1.5, restitution=1.0)
-    start = (0.02, -0.6 * bouncing.p * bouncing.alpha)
-    assert 0.0 < sensitivity(bouncing, Still(), start=start) < math.inf
-
-
 @pytest.mark.parametrize("model", MODELS)
 def test_arrays_and_single_responses_agree(model):
     """A row of blocks for each slenderness; in the last the block is struck during its pulse."""

@@ -45,18 +45,6 @@ def test_no_sample_of_a_response_is_beyond_the_limits(seed):
         assert response.friction_needed == math.inf
 
 
-def test_the_friction_of_a_smooth_extreme_is_exact():
-    """Without an impact the ratio is smooth: samples miss it by the square of their step."""
-    block = RigidBlock(width=0.5, height=1.0)
-    motion = pulse(1.4, 6.0, 1, block)
-    found = simulate(block, motion)
-    assert not [i for i in found.impacts if i.time < motion.duration]
-    times = np.linspace(found.uplifts[0], motion.duration, 100_001)
-    history = simulate(block, motion, times=times).history
-    normal, horizontal = sampled_forces(block, motion, history)
-    assert found.friction_needed == pytest.approx((horizontal / normal).max(), rel=1e-9)
-
-
 SAMPLES = Record(dt=0.1, samples=0.225 * G * np.array([0.0, 0.4, -1.0, 0.2, 0.0]))
 
 

@@ -176,12 +176,6 @@ def test_demands_are_the_forces_of_the_rigid_bodies(load):
     assert needs.spacing == pytest.approx(0.5 + np.abs(across / along).max() * DEPTH, rel=1e-4)
 
 
-def test_a_frame_that_starts_beyond_where_it_balances_asks_for_nothing():
-    frame = RockingFrame(width=0.5, height=1.5, load=2.0)
-    fallen = {"start": (1.1 * frame.alpha, 0.0), "spacing": 2.0, "depth": 0.2}
-    assert frame_demands(frame, Still(), **fallen) == (0.0, 0.0, 1.0, 0.0)
-
-
 def test_a_squat_frame_comes_to_rest_at_its_first_impact():
     frame = RockingFrame(width=1.0, height=1.0, load=3.0)
     assert frame_restitution(frame.alpha, 3.0) < 0.1

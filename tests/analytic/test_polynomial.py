@@ -10,10 +10,6 @@ from analytic.kernels.polynomial import (
     MAX_DEPTH,
     ORDER,
     next_root,
-    slope,
-    to_bernstein,
-    value,
-    value_and_slope,
 )
 
 
@@ -71,16 +67,3 @@ def test_roots_on_borders_hide_no_others(roots, borders, scale):
 def test_roots_that_are_easily_missed(roots, raised, found, within):
     seen = all_roots((Polynomial.fromroots(roots) + raised).coef)
     np.testing.assert_allclose(seen, found, rtol=0.0, atol=within)
-
-
-def test_value_slope_and_bernstein_form():
-    a = np.random.default_rng(1).normal(size=ORDER + 1)
-    p = Polynomial(a)
-    assert abs(value(a, ORDER, 0.7) - p(0.7)) < 1e-12
-    assert abs(slope(a, ORDER, 0.7) - p.deriv()(0.7)) < 1e-10
-    both = value_and_slope(a, ORDER, 0.7)
-    np.testing.assert_allclose(both, (value(a, ORDER, 0.7), slope(a, ORDER, 0.7)), rtol=1e-12)
-    b = np.empty(ORDER + 1)
-    to_bernstein(a, ORDER, b)
-    assert b[0] == a[0]
-    assert abs(b[-1] - p(1.0)) < 1e-11

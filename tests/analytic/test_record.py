@@ -1,6 +1,5 @@
 """Ground motions that are straight between samples, alone and through every source."""
 
-import json
 import math
 import pickle
 
@@ -10,11 +9,10 @@ from declared import Miss, equal_to, held_to
 from given import BLOCK, ONSET, noise, onset_of
 from independent import history_under_samples
 
-from analytic import MODELS, Outcome, Record, RigidBlock, SinePulse, integrate, simulate
+from analytic import MODELS, Outcome, Record, RigidBlock, integrate, simulate
 from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from studies import respond
-from studies.kit.jobs import Job, Question
 from studies.sources.registry import SOURCES
 
 WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])
@@ -59,20 +57,6 @@ def test_a_record_is_a_value():
         WANDERING.samples[0] = 1.0
 
 
-def test_a_jobs_identity_knows_every_sample_and_stays_short():
-    samples = np.random.default_rng(1).normal(size=20_000)
-
-    def key(dt=0.01):
-        case = Question(system=BLOCK, motion=Record(dt=dt, samples=samples))
-        return Job(labels={}, case=case, source="exact").key
-
-    keys = [key(), key(), key(0.02)]
-    samples[19_999] = np.nextafter(samples[19_999], 9.0)
-    assert keys[0] == keys[1]
-    assert len({*keys, key()}) == 3
-    assert len(json.dumps(keys[0])) < 100
-
-
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("seed", range(5))
 def test_every_model_against_scipy(model, seed):
@@ -89,21 +73,6 @@ def test_every_model_against_scipy(model, seed):
     if response.outcome is not Outcome.OVERTURNED and len(impacts) < 12:
         found = response.history.theta
         assert found == pytest.approx(expected, abs=1e-8 * np.abs(found).max())
-
-
-@pytest.mark.parametrize("model", MODELS)
-def test_a_finely_sampled_sine_is_the_sine(model):
-    """The interpolant of a sine is off by (omega dt)^2/8 at most, so that a quarter of the step
-    makes a sixteenth of the difference."""
-    pulse = SinePulse(amplitude=1.35 * ONSET, omega=4.0 * BLOCK.p, half_cycles=2)
-    right = simulate(BLOCK, pulse, model).peak_ratio
-    errors = []
-    for count in (200, 800):
-        times = np.linspace(0.0, pulse.duration, count + 1)
-        record = Record(dt=times[1], samples=pulse.acceleration(times))
-        errors.append(abs(simulate(BLOCK, record, model).peak_ratio / right - 1.0))
-    assert errors[0] < 1e-2
-    assert math.log(errors[0] / errors[1], 4.0) == pytest.approx(2.0, abs=0.3)
 
 
 def test_a_sample_at_the_onset_itself_lifts_nothing():

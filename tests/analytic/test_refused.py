@@ -4,7 +4,6 @@ import math
 import re
 from functools import partial
 
-import numpy as np
 import pytest
 from given import BLOCK, G
 
@@ -26,7 +25,6 @@ from analytic.criteria import (
     overturning_amplitude,
 )
 from engines import Scene
-from studies import respond
 
 INF, NAN = math.inf, math.nan
 HALF_SINE = SinePulse(amplitude=0.4 * G, omega=2.0 * math.pi)
@@ -174,16 +172,6 @@ def test_a_tilt_whose_first_impact_no_step_sees_is_refused():
     kept = simulate(BLOCK, start=(1e-30 * BLOCK.alpha, 0.0), **still)
     assert kept.peak_ratio == pytest.approx(1e-30, rel=1e-12)
     refuses(partial(simulate, BLOCK, start=(1e-31 * BLOCK.alpha, 0.0), **still), "theta of the")
-
-
-def test_the_times_of_a_history_are_its_own():
-    for source in ("exact", "rk4", "rk45", "pymunk:fixed"):
-        times = np.array([0.0, 0.1, 0.2])
-        history = respond(source, BLOCK, HALF_SINE, times=times).history
-        times[:] = -1.0
-        np.testing.assert_array_equal(history.time, [0.0, 0.1, 0.2])
-        again = respond(source, BLOCK, HALF_SINE, times=[0.0, 0.1, 0.2]).history
-        np.testing.assert_array_equal(again.theta, history.theta)
 
 
 def test_a_record_of_which_nothing_is_left_is_refused():

@@ -63,14 +63,3 @@ def test_the_event_tolerance_is_the_error_that_is_left():
     ]
     assert errors[0] > 10 * errors[1] > 10 * errors[2]
     assert errors[2] < 1e-10
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_rest_and_uplift_again(method):
-    block = RigidBlock(width=1.0, height=1.05)
-    amplitude = 1.05 * G * math.tan(block.alpha)
-    pulse = SinePulse(amplitude=amplitude, omega=0.9 * block.p, half_cycles=3)
-    exact = simulate(block, pulse)
-    response = integrate(block, pulse, method=method)
-    assert response.uplifts == pytest.approx(exact.uplifts, rel=1e-9)
-    assert len(response.rests) >= 2

@@ -1,7 +1,6 @@
 """Scenes of other things than one block: a frame, a slide."""
 
 import re
-from dataclasses import dataclass, replace
 
 import pytest
 from given import FULL_SINE as SINE
@@ -11,9 +10,8 @@ from uses import HERE, agreed, rocked, scene
 from analytic import RockingFrame, SinePulse, SlidingBlock, Still
 from analytic.response import Outcome, Reason
 from engines.declaration import Stepping
-from engines.mujoco import STACKED, TUNED
 from engines.run.run import simulate_world
-from engines.scene import BASE, LOWER, UPPER, Scene, layout_of
+from engines.scene import BASE, LOWER, UPPER, layout_of
 from engines.world import Moment, Pose
 from studies.cases.drawn import RandomFrame
 
@@ -149,14 +147,6 @@ def test_a_plain_name_is_the_best_preset_that_can_be_used_and_says_which():
     assert not rocked("pymunk").message
 
 
-@pytest.mark.skipif("newton" not in HERE, reason="Newton is not installed")
-@pytest.mark.parametrize("preset", ["naive", "fixed"])
-def test_a_frame_in_newton_lifts_rocks_and_stays_whole(preset):
-    _, found = agreed("newton", QUICK, system=frame(0.5), preset=preset)
-    assert found.observables["parting"] < 0.1
-    assert found.observables["tilt"] < 0.02
-
-
 HARD = {
     "a light beam, which lets go": (3.373, 9.294, 3, 0.6203, 3.198, 5, 0.578),
     "one that lets go between impacts": (3.153, 0.07137, 4, 0.9501, 4.923, 5, 0.3667),
@@ -175,20 +165,6 @@ def test_columns_keep_to_their_beam_in_mujoco(hard):
     assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=5e-3)
 
 
-@pytest.mark.parametrize("aspect", [1.2, 3.0, 12.0])
-def test_a_soft_surface_is_in_proportion_to_what_lifts_a_pivot(aspect):
-    system = RockingFrame(width=0.5, height=0.5 * aspect, columns=3, load=2.0)
-    posed, s = Scene(system=system, motion=QUICK), replace(TUNED, **STACKED)
-    found, depth = s.fitted(posed), STACKED["soft_surface"] / (1.0 + aspect**2)
-    surface, whole, *_ = found.impedance
-    assert found.soft_surface == pytest.approx(depth, rel=1e-12)
-    assert (1.0 - surface) / surface == pytest.approx(depth, rel=1e-12)
-    assert whole == TUNED.impedance[1]
-    firm = replace(s, impedance=(0.1, *TUNED.impedance[1:]))
-    assert firm.fitted(posed).impedance[0] == 0.1
-    assert TUNED.fitted(posed) == TUNED
-
-
 def test_a_frame_is_columns_that_share_their_beam():
     layout = layout_of(frame(2.0, 3), 1000.0, 1.0, (0.0, 0.0))
     *columns, beam = layout.bodies
@@ -198,8 +174,3 @@ def test_a_frame_is_columns_that_share_their_beam():
     feet = [layout.carried(contact) for contact in layout.contacts if contact.face == LOWER]
     assert tops == pytest.approx([beam.mass / 3.0] * 3)
     assert sum(feet) == pytest.approx(sum(body.mass for body in layout.bodies))
-
-
-@dataclass(frozen=True)
-class Nothing:
-    width = height = alpha = p = gravity = 1.0
