@@ -39,13 +39,12 @@ from studies.kit.identity import version_of
 from studies.kit.jobs import Job, Row, answer
 from studies.kit.options import Running
 from studies.kit.say import in_columns, one_line, out_of, part
-from studies.kit.store import check, project_version
+from studies.kit.store import project_version
 from studies.kit.study import Study, Tables
-from studies.kit.tables import read_table, write_text
+from studies.kit.tables import write_text
 from studies.measures.differences import summarize, with_reference
-from studies.measures.finer import cheapest_below, joint
+from studies.measures.finer import joint
 from studies.measures.presets import preset_of
-from studies.measures.published import LADDER, PUBLISHED, TARGETS
 from studies.measures.verdicts import Verdict
 from studies.sources.registry import Source, announce, presets_of, resolve, scene_of
 
@@ -149,12 +148,6 @@ def swept(tables: Tables) -> pd.DataFrame:
     return summarize(with_reference(tables[SWEEP]).assign(figure="all"))
 
 
-def published() -> pd.DataFrame:
-    """Return the published errors and times of methods; FolderError if they were edited."""
-    check(PUBLISHED, [LADDER], "the published folder")
-    return read_table(PUBLISHED / LADDER)
-
-
 def finding(tables: Tables) -> str:
     """Say what its best preset predicts."""
     lines = swept(tables).sort_values("max_error", ascending=False, kind="stable")
@@ -166,22 +159,15 @@ def finding(tables: Tables) -> str:
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
-    """Return its errors beside the published ones, its verdicts and failures."""
+    """Return its errors, its verdicts and failures."""
     extremes, along = tables[EXTREMES], precision.work_precision(tables[STEPS])
-    among = {"this engine": joint(along), "published": joint(precision.engines_of(published()))}
     return {
         "The paper's cases; errors of the peak are relative, over those that survive": (
             swept(tables).drop(columns=["figure", "max_difference"])
         ),
-        "Along the step, on typical cases and near overturning together": among["this engine"],
-        "The cheapest setting below an error there, and the published one": pd.DataFrame(
-            {"below": target, "among": whose, **best}
-            for target in TARGETS
-            for whose, lines in among.items()
-            if (best := cheapest_below(lines, target)) is not None
-        ),
+        "Along the step, on typical cases and near overturning together": joint(along),
         "Verdicts on extreme cases": stability.verdicts(extremes),
-        "Failures in extreme cases": stability.failures(extremes)[["case", "source", "reason"]],
+        "Failures in extreme cases": stability.failures(extremes)[stability.FAILURE],
         **{
             f"In the scene of a {scene}": scenes.tabulate(tables[name])[f"{scene}-summary"]
             for name, scene in FURTHER.items()
@@ -197,7 +183,7 @@ def figures(tables: Tables) -> Mapping[str, Figure]:
 
     along = precision.work_precision(tables[STEPS])
     return {
-        "score": draw_precision(along, precision.engines_of(published())),
+        "score": draw_precision(along),
         "extremes": draw_matrix(tables[EXTREMES], "Extreme cases"),
     }
 
@@ -207,8 +193,8 @@ STUDY = Study(
     question="What does one engine predict, and did it get worse?",
     help="""One engine, by ENGINE or ENGINE:PRESET, MODULE:ENGINE or MODULE:build.
 
-The paper's cases with each of its presets, its errors along the step beside the published engines,
-its verdicts on extreme cases, slides and frames. With --against, the exit code is 0 whatever
+The paper's cases with each of its presets, its errors along the step, its
+verdicts on extreme cases, slides and frames. With --against, the exit code is 0 whatever
 failed. A world that lacks a method, turns the wrong way round, or declares another `Moment` than
 the one at which its velocities hold is refused.""",
     jobs=jobs,
@@ -219,8 +205,7 @@ the one at which its velocities hold is refused.""",
     figures=figures,
     needed=lambda rows: [row for row in rows if row["part"] == SWEEP],
     captions={
-        "score": "The engine's presets along their steps, median error against run time; grey "
-        "behind them the published engines.",
+        "score": "The engine's presets along their steps, median error against run time.",
         "extremes": "Extreme cases, a column for each preset: the symbol says how its answer is.",
     },
     running=Running(time_limit=stability.LIMIT_S),
@@ -256,7 +241,6 @@ def command(
     declared = scored(name)
     # what cannot be compared with it is refused now, and not after the last run
     earlier = against and read(against, declared)
-    published()
     if json:
         arguments.check_writable("--json", json)
     if declared.name not in OWN:

@@ -63,10 +63,9 @@ def placed(table: pd.DataFrame) -> pd.DataFrame:
     return lines[lines["wall_s"] > 0.0]
 
 
-def draw_precision(table: pd.DataFrame, behind: pd.DataFrame | None = None) -> Figure:
+def draw_precision(table: pd.DataFrame) -> Figure:
     """Draw the median error of the peak against the run time of a case; others pale behind."""
     lines = placed(table)
-    pale = lines if behind is None else pd.concat([lines, placed(behind)])
     engine = lines["method"].map(lambda method: engine_in(method)[0])
     names = sorted(engine.unique(), key=bool)  # what is no engine comes first
     first = names.count("")
@@ -89,7 +88,7 @@ def draw_precision(table: pd.DataFrame, behind: pd.DataFrame | None = None) -> F
             axes.set(xscale="log", yscale="log", ylim=(low, TOP))
             error_scale(axes.yaxis, low, 1.0, 2 if name else 4)
         mine = lines[engine == name]
-        named.append(_panel(axes, mine, pale[~pale["method"].isin(mine["method"])]))
+        named.append(_panel(axes, mine, lines[engine != name]))
         cases = int(table.groupby("set")["cases"].max().sum())
         words = f"a failure or a wrong outcome in one of {cases} cases" * (not panels)
         strip_beyond(axes, EDGE, words)

@@ -103,9 +103,6 @@ DOUBLE = {"outcome": Outcome.ROCKED, "peak_ratio": 0.2}
 def test_verdict_of_a_changed_answer(case, source, change, verdict):
     found = judge(named(case) if case else CASE, source, replace(EXACT, **change))
     assert found["verdict"] == verdict.value
-    assert (found["reason"] == "") == (verdict in (Verdict.GOOD, Verdict.FAILED)) or change.get(
-        "message"
-    )
 
 
 def test_energy_that_grows_is_seen_and_one_that_falls_is_not():
@@ -130,13 +127,12 @@ def test_edge_is_found_within_its_factor(limit):
     assert math.isnan(largest_good(lambda step: step < SMALLEST_STEP, FACTOR))
 
 
-def test_largest_accurate_step_is_accurate_and_the_next_is_not():
-    (row,) = rows_of("steps", "peak after an impact", "average-acceleration")
-    assert row["largest_accurate"] < row["largest_stable"]
-    for factor, accurate in ((1.0, True), (row["factor"], False)):
-        step = factor * row["largest_accurate"]
-        peak = resolve(row["source"]).call(CASE.block, CASE.motion, step=step).peak_ratio
-        assert (abs(peak / EXACT.peak_ratio - 1) <= 0.01) == accurate
+def test_largest_stable_step_has_the_right_outcome_and_the_next_has_not():
+    (row,) = rows_of("steps", "peak after an impact", "mujoco:fixed")
+    for factor, stable in ((1.0, True), (row["factor"], False)):
+        step = factor * row["largest_stable"]
+        outcome = resolve(row["source"]).call(CASE.block, CASE.motion, step=step).outcome
+        assert (outcome is Outcome.ROCKED) == stable
 
 
 @pytest.mark.parametrize("table", ["matrix", "steps"])
