@@ -50,16 +50,9 @@ Settings = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Level:
-    """A value of a factor.
+    """A value of a factor, by settings of the engine and options of the scene.
 
-    Attributes
-    ----------
-    name, trap : str
-        What it is, and why it goes wrong without a word, where it does.
-    settings, scene : mapping
-        Settings of the engine, and options of the scene.
-    presets : tuple of str
-        From which it is tried.
+    It is tried from some presets; a trap says why it goes wrong without a word, where it does.
     """
 
     name: str
@@ -78,19 +71,9 @@ def level(name: str, presets: tuple[str, ...] = (BEST,), trap: str = "", **setti
 class Factor:
     """Settings that belong together, and what they could be.
 
-    Each of the two presets is tried with the other's values of them, where these differ, and with
-    the levels.
-
-    Attributes
-    ----------
-    name : str
-    settings : tuple of str
-        Their names.
-    levels : tuple of Level
-    by_default : bool
-        Whether to try the best setting with the library's default of them.
-    traps : mapping
-        Preset -> why it goes wrong with the other's values, where it does.
+    Each of the two presets is tried with the other's values of them, the best one only if they are
+    `by_default` to be tried so, and with the levels. traps: preset -> why it goes wrong with the
+    other's values, where it does.
     """
 
     name: str
@@ -175,33 +158,18 @@ class Preset:
 
     Attributes
     ----------
-    name : str
-        "naive", "fixed", ...; "naive" is the library as its own documentation shows it.
-    title : str
-        What a reader is told it is, where `TITLES` does not say it.
-    settings : dataclass
-        The engine's settings; one of them is called "friction".
-    stepping : Stepping
-    step : float
-        p dt of equal steps, unless they are the library's own.
-    step_s : float
-        The library's own step [s].
-    documented : tuple of Citation
-        Of "naive" and "recommended": what its documentation sets, and where it says so.
-    frame : str
-        One of `FRAMES`, where a scene does not say.
-    accuracy_knob : pair or None
-        Name and values, from cheap to dear, of the setting that trades time for accuracy where
-        that is not the step.
-    helped_by : mapping
-        What helps -> the settings that leave it out; None where it is the preset itself.
-    stacked : mapping or None
-        Settings in place of some of these where bodies rest on others; None where it cannot be used
-        for such a scene.
-    stacks : callable or None
-        Builds such a scene, in place of the engine's build.
-    own : mapping
-        Of "naive", settings that are not the library's own -> what the library has by itself.
+    name, title : "naive" (as documented), "fixed", ...; what a reader is told where not as `TITLES`
+    settings : the engine's settings class, one of whose fields is "friction"
+    stepping : who chooses the steps
+    step, step_s : p dt of equal steps, or the library's own [s]
+    documented : what the documentation sets of "naive" and "recommended", and where it says so
+    frame : one of `FRAMES`, where a scene does not say
+    accuracy_knob : the setting that trades time for accuracy where that is not the step, and its
+        values from cheap to dear
+    helped_by : what helps -> the settings that leave it out; None where it is the preset itself
+    stacked : settings in place of some of these where bodies rest on others; None where none can
+    stacks : builds such a scene, in place of the engine's build
+    own : of "naive", settings that are not the library's own -> what it has by itself
     """
 
     name: str
@@ -266,39 +234,22 @@ class Engine:
 
     Attributes
     ----------
-    name, title : str
-        What a user types, and what a reader sees.
-    library : str
-        The module to import.
-    packages : tuple of str
-        Distributions whose versions decide its numbers.
-    install : str
-        What pip is told to install it.
-    build : callable
-        ``(scene, settings, dt_s) -> World``: builds a scene in the ordinary steps dt_s [s]. Only
-        this, and a preset's `stacks`, may import the library, and only when called.
-    presets : tuple of Preset
-        From the library's own to the best there is, for which the engine's plain name stands.
-    core : bool
-        Whether the published studies ask it by default.
-    frames : tuple of str
-        Those of `FRAMES` that it has.
-    stacks : bool
-        Whether it can hold several bodies, and bodies that rest on others.
-    precision : Precision
-    shortest_step : float
-        p dt below which a step has no effect that is resolved.
-    rest_factor : float
-        Up to how many ordinary steps long one of a block at rest may be; 1 where how the block
-        lies depends on the step.
-    script : callable or None
-        ``(scene, settings, dt_s) -> Script``: a scene in the library's own words, in the ordinary
-        steps dt_s [s]. Without it an engine can be neither exported nor quoted.
-    factors : tuple of Factor
-        What its contact can be set to.
-    compiles : bool
-        Whether its library, or its adapter's loop, is compiled when it is first used on a machine:
-        that is then done once before a study's cases, and their time limit does not count it.
+    name, title : what a user types, and what a reader sees
+    library, packages, install : the module to import, the distributions whose versions decide its
+        numbers, and what pip is told to install
+    build : builds a scene; only this and `Preset.stacks` may import the library, when called
+    presets : from the library's own to the best there is, which the engine's plain name means
+    core : whether the published studies ask it by default
+    frames : those of `FRAMES` that it has
+    stacks : whether it can hold several bodies, and bodies that rest on others
+    precision : of its numbers
+    shortest_step : p dt below which a step has no effect that is resolved
+    rest_factor : up to how many ordinary steps long one of a block at rest may be; 1 where how the
+        block lies depends on the step
+    script : a scene in the library's own words; without it none is exported or quoted
+    factors : what its contact can be set to
+    compiles : whether library or adapter is compiled when first used on a machine: once before a
+        study's cases, outside their time limit
     """
 
     name: str
@@ -338,10 +289,7 @@ class Engine:
     def use(self, scene: Scene) -> "Use":
         """Return how it is used for a scene: in the preset that it names, or the best that can be.
 
-        Raises
-        ------
-        ValueError
-            If there is no such preset, or a setting of the scene is not one of the engine's.
+        ValueError if there is no such preset, or a setting of the scene is not the engine's.
         """
         presets = self.presets[::-1] if scene.preset is None else (self.preset(scene.preset),)
         preset = next((each for each in presets if not self._lacks(scene, each)), presets[0])
@@ -385,18 +333,8 @@ STACKED = "bodies that rest on other bodies"
 class Use:
     """How an engine is used for a scene: all that its declaration says of it, resolved once.
 
-    Attributes
-    ----------
-    engine : Engine
-    preset : Preset
-    scene : Scene
-        It says where the base moves.
-    settings : dataclass
-        The preset's, with the scene's own in their place.
-    dt_s : float
-        The ordinary step [s].
-    lacking : str
-        What of the scene the engine cannot do so; empty where it can all.
+    The scene says where the base moves, the settings are the preset's with the scene's own in their
+    place, dt_s is the ordinary step [s]; lacking is what of the scene the engine cannot do, or "".
     """
 
     engine: Engine

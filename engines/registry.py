@@ -67,13 +67,10 @@ def _further() -> list[EntryPoint]:
 
 
 def named(place: str) -> str:
-    """Return the name of an engine that no package announces.
+    """Return the name of an engine that no package announces; ValueError if none stands there.
 
-    Parameters
-    ----------
-    place : str
-        "module:ENGINE", a declaration, or "module:build", what builds a world: its engine is then
-        called as its module. ValueError if neither stands there.
+    It stands at "module:ENGINE", a declaration, or "module:build", what builds a world: its engine
+    is then called as its module.
     """
     if not re.fullmatch(r"[\w.]+:[\w.]+", place):
         raise ValueError(f"engine {place!r} is no place; it must be like my_package.mine:ENGINE")
@@ -94,14 +91,9 @@ def named(place: str) -> str:
 
 
 def announce(place: str, name_of: Callable[[str], str] = named) -> str:
-    """Make an engine known that no package announces; return its name.
+    """Make an engine known that no package announces; return its name, if that is not taken.
 
-    Parameters
-    ----------
-    place : str
-    name_of : callable, optional
-        As `named`, for a place whose code must not be loaded in this process. ValueError as it
-        raises one, and if the name is taken.
+    name_of is as `named`, for a place whose code must not be loaded in this process.
     """
     name = name_of(place)
     if name in ENGINES:
@@ -145,12 +137,24 @@ def loaded(name: str) -> Engine:
 
 
 def core_engines() -> tuple[str, ...]:
-    """Return the names of the engines that the published studies ask by default."""
+    """Return the names of the engines that the published studies ask by default.
+
+    Examples
+    --------
+    >>> core_engines()
+    ('pybullet', 'mujoco')
+    """
     return tuple(name for name, engine in ENGINES.items() if engine.core)
 
 
 def installed_engines() -> tuple[str, ...]:
-    """Return the names of the engines whose libraries are here."""
+    """Return the names of the engines whose libraries are here.
+
+    Examples
+    --------
+    >>> set(installed_engines()) <= set(ENGINES)
+    True
+    """
     return tuple(name for name, engine in ENGINES.items() if engine.installed)
 
 

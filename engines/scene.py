@@ -53,16 +53,8 @@ class Beginning(NamedTuple):
 class Body:
     """A homogeneous box, upright where its rotation is zero.
 
-    Attributes
-    ----------
-    width, height, depth : float
-        Full sizes [m] along x, z and y, which is out of the plane.
-    density : float
-        [kg/m3].
-    home : (float, float)
-        Where its centre is at rest, along the base and above it [m].
-    at : Beginning
-        Where it begins.
+    Its full sizes [m] are along x, z and y, which is out of the plane; its density is in kg/m3. At
+    home its centre is at rest, along the base and above it [m]; at says where it begins.
     """
 
     width: float
@@ -97,15 +89,9 @@ class Contact(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """What stands on what.
+    """What stands on what; so many bodies, from the first on, rock as the system's equation says.
 
-    Attributes
-    ----------
-    bodies : tuple of Body
-    contacts : tuple of Contact
-    rocking : int
-        How many bodies, from the first on, rock about their lower corners as the system's one
-        equation says; 0 where nothing rocks.
+    They turn about their lower corners; 0 where nothing rocks.
     """
 
     bodies: tuple[Body, ...]
@@ -231,6 +217,7 @@ FRAMES = ("base", "world")
 
 MOST_HALF_CYCLES = 10**6
 """Half cycles of which an engine's process holds the times in half a GB."""
+
 ACCURACIES = {"loose": 40, "standard": 200, "tight": 800}
 """Name of an accuracy -> ordinary steps in a time 1/p, where steps are not all equal."""
 
@@ -245,40 +232,43 @@ class Scene:
         What stands on the base. Its restitution is not used: the impact is the engine's own.
     motion : Motion
         Horizontal motion of the base.
-    start : pair of float, optional
+    start : pair of float
         theta [rad] and theta' [rad/s] at t = 0; by default the block is at rest. A block that
         leans stands on its corner on the side of its lean; upright, it turns about the corner
         towards which it moves.
-    preset : str or None, optional
+    preset : str or None
         Name of one of the engine's presets; its best by default.
-    accuracy : str, optional
+    accuracy : str
         One of `ACCURACIES`, for presets whose steps land on impacts or are the engine's own.
-    frame : str, optional
+    frame : str or None
         "base": the base is at rest and the block carries the body force -m u_g''; "world": the
         base moves. By default as the preset does it.
-    density : float, optional
-        [kg/m3].
-    depth : float, optional
-        Size of the block out of the plane [m]; its width by default.
-    friction : float, optional
+    density, depth : float
+        [kg/m3], and the size of the block out of the plane [m], by default its width.
+    friction : float or None
         Coefficient between block and base; by default the system's, where it has one, or the
         preset's. Where it is 0 the block is meant to slide, and a slide is no failure.
-    step : float, optional
+    step : float or None
         p dt, the ordinary step in units of 1/p; the preset's by default.
-    duration : float, optional
+    duration : float or None
         Observe until this time [s], at least the motion's own duration. By default the
         observation ends as soon as peak and outcome are decided.
-    times : sequence of float, optional
+    times : sequence of float or None
         Increasing ground times [s] at which the response is sampled, as long as it is observed.
-    time_limit_s : float, optional
-        Wall-clock time after which a run is given up.
-    max_steps : int, optional
-        Number of steps after which a run is given up.
-    settings : mapping, optional
+    time_limit_s, max_steps : float, int
+        Wall-clock time, and number of steps, after which a run is given up.
+    settings : mapping
         Settings of the engine by name that replace those of the preset.
-    compiled : bool, optional
+    compiled : bool
         Look at it by compiled code where there is more of it than a few steps; both forms give the
         same response to the bit.
+
+    Examples
+    --------
+    >>> from analytic import RigidBlock, SinePulse
+    >>> block = RigidBlock(width=0.5, height=1.5)
+    >>> Scene(system=block, motion=SinePulse(amplitude=4.0, omega=6.0), preset="fixed").stacked
+    False
     """
 
     system: System

@@ -65,15 +65,7 @@ class Allowed:
 
 
 def setting(default: Any = None, *, names: Sequence[str] = (), **allowed: Any) -> Any:
-    """Return a field of a settings class, with what it allows.
-
-    Parameters
-    ----------
-    default : value of the library, or None, which leaves the setting to it
-    names : sequence of str, optional, what it may be
-    **allowed
-        Bounds, and settings beside which it must be given, as of `Allowed`.
-    """
+    """Return a field with the library's default, or None, and what it allows; see `Allowed`."""
     return field(default=default, metadata={"allowed": Allowed(names=tuple(names), **allowed)})
 
 
@@ -107,12 +99,7 @@ def given(settings: Mapping[str, Any]) -> dict[str, Any]:
 def disagreement(pairs: Mapping[str, tuple[Any, Any]], rounding: float = 2.0**-53) -> str:
     """Name the first setting that reads back as something else, or return an empty string.
 
-    Parameters
-    ----------
-    pairs : mapping
-        Name -> what was set, and what was read. What was left to the library, None, is not held.
-    rounding : float, optional
-        Relative rounding of the engine's numbers.
+    pairs: name -> what was set, None being left to the library, and what was read.
     """
     near = max(1e-9, ROUNDINGS * rounding)
     for name, (wanted, found) in pairs.items():

@@ -28,7 +28,6 @@ class Moment(enum.Enum):
 ROUNDINGS = 16.0
 """Error of the height of a corner above the base, in roundings of the block's height."""
 
-
 REST_FACTOR = 8.0
 """Longest step of a block at rest that nothing can lift yet, in ordinary steps."""
 
@@ -78,21 +77,13 @@ class Step(NamedTuple):
 
     Attributes
     ----------
-    dt_s, end_s : float
-        How far the step goes, and the time at its end [s].
-    kick_s : float
-        For how long forces act on the velocity [s]: from the moment of the last step's velocity
-        to that of this one's.
-    pull_x, pull_z : float
-        Gravity [m/s2] that gives the velocity in `dt_s` what the weight gives it in `kick_s`, and
-        along the base what the body force -m u_g'' does. In the frame "world" pull_x is zero.
-    base_kick, base_velocity, base_x : float
-        Change of the base's velocity [m/s] in `kick_s`; its velocity, which in the mean over the
-        step leads it to its place [m] at the end.
-    phase : ContactPhase
-        What the step is for.
-    side : float
-        About which corner the block turns: -1 or 1, or 0 where it is held by both.
+    dt_s, end_s : how far the step goes, and the time at its end [s]
+    kick_s : for how long forces act on the velocity [s], from the moment of the last one to this
+    pull_x, pull_z : gravity [m/s2] that gives the velocity in `dt_s` what the weight gives it in
+        `kick_s`, and along the base what the body force -m u_g'' does; 0 in the frame "world"
+    base_kick : change of the base's velocity [m/s] in `kick_s`
+    base_velocity, base_x : the base's velocity, whose mean over the step leads to its place [m]
+    phase, side : what the step is for; the corner turned about, -1 or 1, or 0 where both hold
     """
 
     dt_s: float
@@ -110,9 +101,8 @@ class Step(NamedTuple):
 class Pose(NamedTuple):
     """Where a body is, relative to the base, as the engine reports it: a row of a world's state.
 
-    x, z [m] are the horizontal and vertical position of the centre of mass, zero where the base's
-    middle began and at the level of the base; theta [rad] is positive when the body leans towards
-    +x; rate [rad/s] is the angular velocity, at the world's `Moment`.
+    x, z [m] is the centre of mass, from the level of the base and where its middle began; theta
+    [rad] leans towards +x, and its rate [rad/s] is that of the world's `Moment`.
     """
 
     x: float
@@ -139,18 +129,10 @@ class World(Protocol):
         """Advance by a step."""
 
     def state(self) -> Sequence[Sequence[float]] | FloatArray:
-        """Read every body's `Pose` back, a row each; the next call may overwrite what it returns.
-
-        Returns
-        -------
-        array_like (bodies, 4)
-        """
+        """Read every body's `Pose` back, a row each; the next call may overwrite the rows."""
 
     def fault(self) -> str:
-        """Say what the engine knows to have gone wrong, or return an empty string.
-
-        It is asked now and then while a run goes on, and at its end.
-        """
+        """Say what the engine knows to have gone wrong, now and then, or return an empty string."""
 
     def close(self) -> None:
         """Release the engine's memory."""
@@ -167,28 +149,18 @@ class SelfSteppingWorld(World, Protocol):
 class Script:
     """What an engine's declaration writes of a scene: Python for the library, without this project.
 
-    The lines are put into a script that shakes the base, watches for the largest rotation and ends
-    the run, the same for all engines.
+    A script that is the same for all engines shakes the base with it, and watches the rotation.
 
     Attributes
     ----------
-    imports : tuple of str
-        Lines that import the library.
-    settings : tuple of str
-        What the preset sets, in the library's words, a line each: what a reader would copy.
-    build : tuple of str
-        Lines that build the scene, and a list of its `bodies`; `HERE` is the folder of the script.
-    step : tuple of str
-        Lines that take a step of `DT` [s] under the gravity `pull_x` and `pull_z` [m/s2]; a base
-        that moves comes to `base_x` [m] by a mean `base_velocity` [m/s].
-    pose : tuple of str
-        Lines that read `theta` [rad] and `rate` [rad/s] of the body with a `number`.
-    place : str
-        How far the first body's centre is along the base [m], which should be at `base_x` [m].
-    moment : Moment
-        At which moment of a step the velocity holds.
-    files : mapping
-        Name -> text of what lies beside the script.
+    imports, settings : lines that import the library, and that set what a reader would copy
+    build : lines that build the scene and list its `bodies`; `HERE` is the folder of the script
+    step : lines that take a step of `DT` [s] under the gravity `pull_x` and `pull_z` [m/s2]; a base
+        that moves comes to `base_x` [m] by a mean `base_velocity` [m/s]
+    pose : lines that read `theta` [rad] and `rate` [rad/s] of the body with a `number`
+    place : how far the first body's centre is along the base [m], which is to be at `base_x` [m]
+    moment : at which moment of a step the velocity holds
+    files : name -> text of what lies beside the script
     """
 
     imports: tuple[str, ...]

@@ -62,7 +62,7 @@ def drive(
 ) -> int:
     """Take up to so many steps while the run goes on; return how many were taken.
 
-    runs and lists are as for `engines.run.look.onward`; with most = 0 the state is read alone.
+    runs and lists are as for `engines.run.look.next_step`; with most = 0 the state is read alone.
     """
     held = holds[0]
     read(held, arrays)

@@ -16,13 +16,10 @@ class Spread:
 
     Attributes
     ----------
-    columns : int
-        How many there are, and the number of the beam's row; 0 where there is no beam.
-    homes : float
-        Where the beam's centre is while a column's is at 0 [m].
-    parting, tilt, drift, slide : float
-        Largest difference of two columns' rotations [rad], largest rotation of the beam [rad], and
-        the largest distance by which it slid along the tops [m], at all and until they pass alpha.
+    columns : how many there are, and the number of the beam's row; 0 where there is no beam
+    homes : where the beam's centre is while a column's is at 0 [m]
+    parting, tilt : largest difference of two columns' rotations, largest one of the beam [rad]
+    drift, slide : how far it slid along the tops [m] at most, at all and until they pass alpha
     """
 
     columns: int = 0

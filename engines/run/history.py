@@ -12,12 +12,8 @@ def sample(rows: NDArray[np.float64], times: Sequence[float]) -> History:
     """Sample a response at those of some times that it reached.
 
     Over a step, the rotation is a parabola through both ends. Its curvature comes from the step
-    before or the step after, whichever gives less, so that it does not reach across an impact.
-
-    Parameters
-    ----------
-    rows : ndarray (n, 4), a `swing.Row` each: the start, and the ends of all steps
-    times : sequence of float, [s]
+    before or the step after, whichever gives less, so that it does not reach across an impact. The
+    rows (n, 4) are a `watch.Row` each: the start, and the ends of all steps.
     """
     time, rate_s, theta, rate = rows.T
     wanted = np.asarray(times, dtype=np.float64)

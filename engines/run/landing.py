@@ -95,26 +95,20 @@ class Landing:
 
     Attributes
     ----------
-    dt, least, longest_rest, shortest : float
-        The ordinary step, the shortest one, the longest one of a block at rest, and the shortest
-        swing that is followed [s].
-    width, half_height, touching : float
-        Of the block, and the height below which a corner touches the base [m].
-    fall : float
-        p^2 sin(alpha) [rad/s2], by which an upright block on one corner falls to the other.
-    swing_part, load_part, settled, part : float
-        Parts of a swing and of a load that a step may cover; change of the rate, by its part, with
-        which an impact is over; moment of a step's velocity.
-    side : float
-        Corner that the block turns about.
-    resting, bouncing, approaching : bool
-        Whether the block is at rest, an impact began its swing, the next one is approached.
-    strikes, strike_s : int, float
-        Steps through the present impact, and their length [s].
-    last_dt, last_approach, last_rate : float, bool, float
-        Length [s] of the last step, whether it was of an approach, the rate [rad/s] before it.
-    between : float
-        Time [s] between the moments of the last two velocities.
+    dt, least, longest_rest, shortest : the ordinary step, the shortest one, the longest one of a
+        block at rest, and the shortest swing that is followed [s]
+    width, half_height, touching : of the block; height below which a corner touches the base [m]
+    fall : p^2 sin(alpha) [rad/s2], by which an upright block on one corner falls to the other
+    swing_part, load_part : parts of a swing and of a load that a step may cover
+    settled, part : change of the rate, by its part, with which an impact is over; moment of a
+        step's velocity
+    side : corner that the block turns about
+    resting, bouncing, approaching : the block is at rest, an impact began its swing, the next one
+        is approached
+    strikes, strike_s : steps through the present impact, and their length [s]
+    last_dt, last_approach, last_rate : length [s] of the last step, whether it was of an approach,
+        the rate [rad/s] before it
+    between : time [s] between the moments of the last two velocities
     """
 
     dt: float
@@ -142,15 +136,7 @@ class Landing:
 
 
 def begin_landing(scene: Scene, dt_s: float, moment: Moment, resolution: Resolution) -> Landing:
-    """Return what landing steps begin with.
-
-    Parameters
-    ----------
-    scene : Scene
-    dt_s : float, ordinary step [s]
-    moment : Moment, of a step, at which the engine's velocity holds
-    resolution : Resolution, what the engine's numbers tell apart: nothing finer is asked of it
-    """
+    """Return what landing steps begin with; nothing is asked of an engine beyond its resolution."""
     block = scene.system
     fall = block.p**2 * math.sin(block.alpha)
     # a swing that rises by no more than the engine's numbers tell apart
@@ -174,15 +160,7 @@ def begin_landing(scene: Scene, dt_s: float, moment: Moment, resolution: Resolut
 
 
 def choose(to: Landing, pace: Pace, pose: Pose, lifted: bool) -> Choice:
-    """Choose the next step.
-
-    Parameters
-    ----------
-    to : Landing, moved on
-    pace : Pace, where the run stands
-    pose : Pose, of the block after the last step
-    lifted : bool, whether it is aloft
-    """
+    """Choose the next step from the block's pose after the last one, and whether it is aloft."""
     if to.strikes:
         choice = through(to, pace, pose)
     elif to.resting and not lifted:

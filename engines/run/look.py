@@ -75,14 +75,9 @@ class Lists(NamedTuple):
 
 
 def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray) -> bool:
-    """See a state, and choose the next step unless the run is over; return whether it goes on.
+    """See a state (bodies, 4), and choose the next step (10,) unless the run is over.
 
-    Parameters
-    ----------
-    runs : sequence of Run, updated
-    lists : Lists, whose rows and events are written
-    step : ndarray (10,), where the next `Step` is written
-    state : ndarray (bodies, 4), a `Pose` a row
+    Return whether it goes on; runs are updated, and rows and events of lists are written.
     """
     if runs[0].pace.time > 0.0 and not undecided(runs, lists, state):
         return False

@@ -102,20 +102,9 @@ def simulate_world(
     stepping: Stepping = Stepping.LANDING,
     resolution: Resolution = UNLIMITED,
 ) -> Response:
-    """Step a built world until its response is decided.
+    """Step a built world, at the start of the scene, until its response is decided.
 
-    Parameters
-    ----------
-    world : World, at the start of the scene
-    scene : Scene
-    dt_s : float, ordinary step [s]
-    stepping : Stepping, optional, who chooses the steps
-    resolution : Resolution, optional, what the engine's numbers tell apart
-
-    Returns
-    -------
-    Response
-        A failed one with its reason where the world fails or the limits of the scene are reached.
+    That is a failed one with its reason where the world fails or the scene's limits are reached.
     """
     monitor, drive = Monitor(scene, dt_s, stepping, world.moment, resolution), None
     if scene.compiled and (drive := getattr(world, "drive", None)):

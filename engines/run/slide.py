@@ -25,35 +25,22 @@ STOP, DISTANCE, SINCE = range(3)
 
 @dataclass(slots=True)
 class Slide:
-    """What was seen of a box until now.
+    """What was seen of a box until now; on says whether there is one.
 
     Attributes
     ----------
-    on : bool
-        Whether there is one.
-    home, half_height, width : float
-        Of the box [m].
-    slow, still : float
-        Velocity up to which it does not slide [m/s], and time after which it is at rest [s].
-    motion_end, end : float
-        End of the motion and of the observation [s].
-    keeps_rows : bool
-        Whether a history is wanted.
-    place, origin, stays_at, time : float
-        Last place relative to the base; where it last began to slide, or else came to rest, and
-        where it has moved by no more than a tremor [m]; when it was at the first [s].
-    since, stays_since : float
-        Since when it slides or rests, and trembles at most [s].
-    way : float
-        Which way it slides, 0 while it does not.
-    rows, slips : int
-        How many rows there are, and how many slips have ended.
-    lift, turn, depth : float
-        How high and how deep its centre was seen beyond where it rests [m], and how far it turned
-        [rad].
-    overturned, done : bool
-    problem : int
-        See `watch`, and by how much [m]: far.
+    home, half_height, width : of the box [m]
+    slow, still : velocity up to which it does not slide [m/s], time after which it is at rest [s]
+    motion_end, end : of the motion and of the observation [s]
+    keeps_rows : whether a history is wanted
+    place, time : last place relative to the base [m], and when [s]
+    origin, since : where and since when it slides or rests
+    stays_at, stays_since : where and since when it has moved by no more than a tremor
+    way : which way it slides, 0 while it does not
+    rows, slips : how many rows there are, and how many slips have ended
+    lift, depth, turn : how high and deep its centre was beyond where it rests [m]; how far it
+        turned [rad]
+    problem, far : see `watch`, and by how much [m]
     """
 
     on: bool = False

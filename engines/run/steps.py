@@ -44,28 +44,17 @@ class Pace:
 
     Attributes
     ----------
-    policy : int
-        Which of `POLICIES` chooses.
-    dt, part, gravity : float
-        Ordinary step [s]; part of a step that has passed at the moment of its velocity; [m/s2].
-    felt : bool
-        Whether the block carries the body force of the base's acceleration, the base being at rest.
-    same : float
-        Difference [s] of two times that are the same.
-    motion_end, end : float
-        Of the motion and of the observation [s].
-    time, last_dt : float
-        End and length of the last step [s].
-    velocity, place : float
-        Of the base at the moment of the last velocity [m/s], and at the end of the step [m].
-    stops, loads : int
-        Stops and loads that have passed.
-    left, time_to_uplift : float
-        Time [s] until the next stop; until a block at rest may lift, or all ends.
-    loaded, lifts_next : bool
-        Whether the first load that has not ended has begun; whether a load is what ends the calm.
-    load_s, load_side : float
-        How long that load lasts [s], inf if there is none, and its side.
+    policy : which of `POLICIES` chooses
+    dt, part, gravity : ordinary step [s]; moment of a step's velocity, as its part; [m/s2]
+    felt : whether a block on a base at rest carries the body force of the base's acceleration
+    same : difference [s] of two times that are the same
+    motion_end, end : of the motion and of the observation [s]
+    time, last_dt : end and length of the last step [s]
+    velocity, place : of the base at the moment of the last velocity [m/s], and at the step's end
+    stops, loads : how many have passed
+    left, time_to_uplift : until the next stop; until a block at rest may lift, or all ends [s]
+    loaded, lifts_next : the first load that has not ended has begun; a load is what ends the calm
+    load_s, load_side : how long that load lasts [s], inf if there is none, and its side
     """
 
     policy: int
@@ -93,15 +82,9 @@ class Pace:
 def begin_pace(
     scene: Scene, dt_s: float, stepping: Stepping, moment: Moment, resolution: Resolution
 ) -> Pace:
-    """Return what the steps of a scene begin with.
+    """Return what the steps of a scene begin with, which land on impacts of what rocks alone.
 
-    Parameters
-    ----------
-    scene : Scene
-    dt_s : float, ordinary step [s]; where an engine steps by itself, the time between two looks
-    stepping : Stepping, who chooses; steps land on the impacts of what rocks alone
-    moment : Moment, of a step, at which the engine's velocity holds
-    resolution : Resolution, what the engine's numbers tell apart
+    Where an engine steps by itself, dt_s [s] is the time between two looks.
     """
     lands = stepping is Stepping.LANDING and not scene.layout.rocking
     return Pace(

@@ -98,55 +98,35 @@ class Watch:
 
     Attributes
     ----------
-    ahead : float
-        Part of a step that its velocity is ahead of its end.
-    home : float
-        Where the block's centre is at rest [m].
-    half_width, half_height, alpha : float
-        Of the block [m, m, rad].
-    lift, rest_time, rest_rate : float
-        Height of the free corner above which the block is aloft [m]; time without that after which
-        it is at rest [s]; and the rate up to which it may turn then [rad/s].
-    fall, least_fall : float
-        Rate squared over the rotation [rad/s2] with which a block falls back, and the least
-        rotation [rad] from which a fall is seen as one.
-    motion_end, end : float
-        End of the motion, and of the observation [s].
-    slides, lands, keeps_rows : bool
-        Whether the block is meant to slide; whether steps land on impacts of a pivot that has to
-        hold; whether a history is wanted.
-    resting, rocked, lifted, crossed, overturned, turned, done : bool
-        Whether it is at rest, has left it at some time, is aloft at the last row, has exceeded
-        alpha, has overturned, has turned back after the motion; whether the response is decided.
-    peak : float
-        Largest rotation [rad].
-    low_since, last_rest, turned_at : float
-        Since when it has not been aloft (nan while it is), when it last came to rest, and when it
-        last turned faster than a block at rest may [s].
-    rows, events, uplift : int
-        How many there are, and which event is the last uplift.
-    slide, sink, sunk, highest, beam_slide : float
-        Of the pivot [m]; sunk is how deep it was before the block lay; and how far the beam of a
-        frame slid along the columns' tops.
-    give, hop : float
-        How deep the block at rest was in its base, and how high its last swing's pivot hopped [m].
-    lean_side, lean_peak, lean_since : float
-        Of the block at rest: to which side it leans, how far it did [rad], and since when [s].
-    hovers, loose, props : bool
-        Whether a skin of the contact holds it above its base, whether it was seen to rock although
-        no corner's height shows it, and whether its contact holds it leaning.
-    landed, landed_s, landed_rate : bool, float, float
-        Whether a swing ended and the next has not begun: when [s], and how fast [rad/s].
-    side, from_rest, count, kept : float, bool, int, int
-        Of the swing: its side, 0 where there is none; whether an uplift began it; its rows until
-        now, and how many of them are in `last`.
-    first, last, two : array
-        Rows at both ends of the swing, without the shorter steps of an approach at the last; and
-        the last two rows of all.
-    swing_end, swing_theta, swing_dt : float
-        Time [s] and rotation [rad] at the swing's last row of all, and the length [s] of its step.
-    problem, far : int, float
-        Why it is no longer that of a rocking block, and by how much [m].
+    ahead : part of a step that its velocity is ahead of its end
+    home, half_width, half_height, alpha : where its centre is at rest [m]; of the block [m, m, rad]
+    lift, rest_time, rest_rate : height of the free corner above which it is aloft [m]; time without
+        that after which it is at rest [s], and the rate up to which it may turn then [rad/s]
+    fall, least_fall : rate squared over the rotation [rad/s2] with which it falls back, and the
+        least rotation [rad] from which a fall is seen as one
+    motion_end, end : of the motion, and of the observation [s]
+    slides, lands, keeps_rows : it is meant to slide; steps land on impacts of a pivot that has to
+        hold; a history is wanted
+    resting, rocked, lifted, crossed : it is at rest, has left it at some time, is aloft at the last
+        row, has exceeded alpha
+    turned, done : it has turned back after the motion; the response is decided
+    peak : largest rotation [rad]
+    low_since, last_rest, turned_at : since when it has not been aloft (nan while it is), when it
+        last came to rest, and last turned faster than a block at rest may [s]
+    rows, events, uplift : how many there are, and which event is the last uplift
+    slide, sink, sunk, highest : of the pivot [m]; sunk is how deep it was before the block lay
+    beam_slide : how far the beam of a frame slid along the columns' tops [m]
+    give, hop : how deep it was in its base at rest, how high its last swing's pivot hopped [m]
+    lean_side, lean_peak, lean_since : at rest: where it leans, how far it did [rad], since when [s]
+    hovers, loose, props : a skin of the contact holds it above its base; it was seen to rock
+        although no corner's height shows it; its contact holds it leaning
+    landed, landed_s, landed_rate : a swing ended and the next has not begun: when [s], how fast
+    side, from_rest : of the swing: its side, 0 where there is none; an uplift began it
+    count, kept : its rows until now, and how many of them are in `last`
+    first, last, two : rows at both ends of the swing, without the shorter steps of an approach at
+        the last; and the last two rows of all
+    swing_end, swing_theta, swing_dt : time and rotation at its last row, length [s] of its step
+    problem, far : why it is no longer that of a rocking block, and by how much [m]
     """
 
     ahead: float
@@ -213,14 +193,7 @@ def begin_watch(
 ) -> Watch:
     """Return what a body that rocks begins with: at rest, or in a swing that no uplift began.
 
-    Parameters
-    ----------
-    scene : Scene
-    body : Body, which of its bodies is watched
-    dt_s : float, ordinary step [s], which bounds what can be resolved
-    lands : bool, whether the steps land on impacts of a pivot that has to hold
-    moment : Moment, of a step, at which the engine's velocity holds
-    resolution : Resolution, what the engine's numbers tell apart
+    The ordinary step dt_s [s] bounds what can be resolved.
     """
     block, (theta, rate) = scene.system, scene.start
     lift = max(LIFT_WIDTHS * block.width, resolution.length_m)
