@@ -23,7 +23,7 @@ from analytic.response import Outcome
 from studies.cases.paper import PULSES
 from studies.cases.refusal import BadInputError
 from studies.cases.window import LEAST_ONSETS, Window, pulse_of
-from studies.kit.arguments import Count, Positive, as_bad_input
+from studies.kit.arguments import Positive, as_bad_input
 from studies.kit.jobs import Job, Question, Row, answer
 from studies.kit.options import Running
 from studies.kit.say import part
@@ -62,32 +62,17 @@ class Options:
     pulse
         half-sine or full-sine.
     aspect
-        H/B of the block, 4 by default.
-    low
-        Where the abscissa ω/p begins, 0.2 by default.
-    high
-        Where it ends, 8 by default.
-    onsets
-        Largest amplitude over g tan α, 10 by default; a map begins at 1.
-    columns
-        Number of frequencies; 1000 by default, 200 in a quick study.
-    rows
-        Number of amplitudes at each; 1000 by default, 200 in a quick study.
+        H/B of the block.
     """
 
     pulse: Literal["half-sine", "full-sine"] = "full-sine"
-    aspect: Positive | None = None
-    low: Positive | None = None
-    high: Positive | None = None
-    onsets: Positive | None = None
-    columns: Count | None = None
-    rows: Count | None = None
+    aspect: Positive = 4.0
 
     def window(self, quick: bool) -> Window:
-        """Return the plane that is asked for; BadInputError if an option is beyond its limits."""
-        given = {name: value for name, value in asdict(self).items() if value is not None}
+        """Return the plane that is asked for; BadInputError if no block of the shape is mapped."""
         with as_bad_input():
-            return Window(**dict.fromkeys(("columns", "rows"), 200 if quick else 1000) | given)
+            cells = 200 if quick else 1000
+            return Window(pulse=self.pulse, aspect=self.aspect, columns=cells, rows=cells)
 
 
 def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
@@ -95,16 +80,17 @@ def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
     for name in sources:
         if resolve(name).kind not in ("model", "engine"):
             raise BadInputError(f"--sources names {name!r}; it must name models and engines")
-    window = options.window(quick)
     models = [name for name in sources if name in MODELS]
     engines = [name for name in sources if name not in MODELS]
-    case = Question(
-        system=window.block,
-        motion=pulse_of(window.block, window.pulse, window.onsets, window.high),
-    )
-    maps = dict.fromkeys(("exact", *models) if models else ())
-    found = [Job(labels=asdict(window), case=case, source=model) for model in maps]
+    found = map_jobs(models, options.window(quick)) if models else []
     return found + (plane_jobs(("exact", *engines), quick) if engines else [])
+
+
+def map_jobs(models: Sequence[str], window: Window) -> list[Job]:
+    """Return a job for the exact model and each other one, which maps a plane."""
+    motion = pulse_of(window.block, window.pulse, window.onsets, window.high)
+    case, named = Question(system=window.block, motion=motion), dict.fromkeys(("exact", *models))
+    return [Job(labels=asdict(window), case=case, source=name) for name in named]
 
 
 def plane_jobs(sources: Sequence[str], quick: bool) -> list[Job]:

@@ -1,4 +1,4 @@
-"""By how much a part of the cases errs at most, for every variant of a linearization."""
+"""The errors of every variant of a linearization over the slenderness of a block."""
 
 from __future__ import annotations
 
@@ -14,32 +14,29 @@ ONSETS = {"0": ("#D55E00", "lifts at g α"), "1": ("#0072B2", "lifts at g tan α
 """What a variant takes as the onset -> its colour, and what that is."""
 
 
-def draw_distributions(
-    quantiles: pd.DataFrame, titles: Mapping[str, str], known: Mapping[str, str]
-) -> Figure:
+def draw_errors(lines: pd.DataFrame, titles: Mapping[str, str]) -> Figure:
     """Draw a panel for each grid: colour is the onset of a line, dash its frequency."""
-    grids = list(quantiles["grid"].unique())
-    drawing, panels = sheet((9.4, 5.2), 1, len(grids), sharex=True, sharey=True)
+    grids = list(lines["grid"].unique())
+    drawing, panels = sheet((9.4, 5.2), 1, len(grids), sharey=True)
     for axes, grid in zip(panels, grids, strict=True):
-        names = []
-        for changed, rows in quantiles[quantiles["grid"] == grid].groupby("changed", sort=False):
-            onset, frequency, saddle = tuple(str(changed))
-            name, colour = known.get(str(changed), ""), ONSETS[onset][0]
-            dash, pale = (0, (4, 2)) if frequency == "1" else "-", saddle == "1" and not name
-            axes.plot(rows["quantile"], rows["error"], color=colour, linestyle=dash,
-                      linewidth=1.8 if name else 0.9, alpha=0.6 if pale else 1.0)  # fmt: skip
-            words = titles[str(changed)].partition(", ")[2].partition(" (")[0]
-            # at its end, the worst case, lines lie together
-            place = rows[rows["quantile"] <= 0.9].sort_values("quantile").iloc[-1]
+        names, mine = [], lines[lines["grid"] == grid]
+        for changed, rows in mine.groupby("changed", sort=False):
+            words, _, name = titles[str(changed)].partition(", ")[2].rstrip(")").partition(" (")
+            colour, dash = ONSETS[str(changed)[0]][0], (0, (4, 2)) if changed[1] == "1" else "-"
+            axes.plot(rows["aspect"], rows["median_error"], color=colour, linestyle=dash,
+                      marker="o", markersize=3.0, linewidth=1.8 if name else 0.9)  # fmt: skip
             text = f"{name}: {words}" if name else words
-            names.append(Name(text, float(place["quantile"]), float(place["error"]), colour))
-        axes.set(yscale="log", xlim=(0.0, 1.0), ylim=(1e-4, 1e1), title=f"{grid} grid")
-        axes.set_xlabel("part of the surviving cases  [–]")
+            end = rows.iloc[-1]
+            names.append(Name(text, float(end["aspect"]), float(end["median_error"]), colour))
+        axes.set(xscale="log", yscale="log", title=f"{grid} grid", xlabel="slenderness  H/B  [–]")
+        ticks = [at for at in (2, 3, 4, 6, 10) if at <= mine["aspect"].max()]
+        axes.set_xticks(ticks, list(map(str, ticks)))
+        axes.set_xticks([], minor=True)
         axes.grid(alpha=0.25)
     for onset, (colour, words) in ONSETS.items():
-        panels[0].text(0.97, 0.1 - 0.05 * int(onset), words, color=colour, ha="right",
+        panels[0].text(0.03, 0.1 - 0.05 * int(onset), words, color=colour,
                        transform=panels[0].transAxes)  # fmt: skip
+    error_scale(panels[0].yaxis, 1e-4, 10.0, 1)
     beside(panels[-1], names, 7.5)
-    error_scale(panels[0].yaxis, 1e-4, 1.0, 1)
-    panels[0].set_ylabel("largest relative error of the peak  [–]")
+    panels[0].set_ylabel("median relative error of the peak  [–]")
     return drawing

@@ -65,7 +65,7 @@ def test_tables_follow_the_rows(monkeypatch):
     both = pd.concat([rows, wide], ignore_index=True)
     tables = linearizations.tabulate(both)
     lines = tables["linearizations"].set_index(["grid", "changed"])
-    assert len(lines) == 16 and len(tables["quantiles"]) == 16 * 201
+    assert len(lines) == 16
     assert lines.loc[("paper", "000"), ["cases", "wrong", "false"]].tolist() == [480, 26, 25]
     assert tables["slenderness"].groupby("grid")["false"].sum()["paper"] == lines["false"].sum() / 2
     assert tables["findings"]["holds"].tolist() == [False, True, True]

@@ -12,14 +12,13 @@ from studies.cases.window import Window, pulse_of
 from studies.kit.run import run
 from studies.overturning import Options
 
-SMALL = Options(columns=12, rows=60, low=0.3, high=6.0)
-WINDOW = SMALL.window(quick=False)
+WINDOW = Window(columns=12, rows=60, low=0.3, high=6.0)
 
 
 @pytest.fixture(scope="module")
 def tables():
     """Return the tables of a small map of two models."""
-    jobs = overturning.jobs(("housner",), False, SMALL)
+    jobs = overturning.map_jobs(("housner",), WINDOW)
     return overturning.tabulate(pd.DataFrame(run(jobs, overturning.measure)))
 
 

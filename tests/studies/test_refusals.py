@@ -107,11 +107,7 @@ compare CASE --scene bridge | --scene is 'bridge'; it must be among block, frame
 
 # what else a study asks
 overturning --out DIR --sources rk4 | --sources | 'rk4' | engines
-overturning --out DIR --sources exact --low 5 --high 2 | --low is 5 | smaller
-overturning --out DIR --sources exact --high 1e4 | --high is 10000 | 0.001 to 1000
-overturning --out DIR --sources exact --onsets 1 | --onsets is 1 | 1.001 to 1000
-overturning --out DIR --sources exact --columns 1000000000 | --columns is 1000000000 | 4000
-overturning --out DIR --sources exact --columns 0 | --columns | positive whole number
+overturning --out DIR --sources exact --aspect 1e4 | --aspect is 10000 | 0.1 to 100
 contact --out DIR --engines mujoco mujoco | twice
 contact --out DIR --scene frames | --scene | frames | block
 contact --out DIR --scene frame --engines moreau | --scene | moreau
