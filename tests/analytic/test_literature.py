@@ -1,7 +1,7 @@
 """Numbers printed in the literature: value, digits and source of each, and what the models find."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -111,37 +111,48 @@ def test_the_amplitude_that_changes_the_outcome(printed):
     assert (printed.low <= printed.amplitude() <= printed.high) == (printed.shift == 0.0)
 
 
+def shaken(block, beta, omega_over_p, periods):
+    """Return so many periods of the cosine beta alpha g."""
+    amplitude = beta * block.alpha * GRAVITY
+    omega, half_cycles = omega_over_p * block.p, 2 * periods
+    return SinePulse(amplitude=amplitude, omega=omega, half_cycles=half_cycles, phase=COSINE)
+
+
 def after(block, beta, omega_over_p, periods, start, last):
-    """Return theta [rad] in each of the last periods of harmonic shaking beta alpha g."""
-    pulse = SinePulse(
-        amplitude=beta * block.alpha * GRAVITY,
-        omega=omega_over_p * block.p,
-        half_cycles=2 * periods,
-        phase=COSINE,
-    )
+    """Return theta [rad] in each of the last periods of harmonic shaking."""
+    pulse = shaken(block, beta, omega_over_p, periods)
     times = np.linspace(periods - last, periods, 200 * last, endpoint=False) * TURN / pulse.omega
     seen = simulate(block, pulse, start=start, times=times, duration=pulse.duration)
     return seen.history.theta.reshape(last, 200)
 
 
-@pytest.mark.parametrize(
-    ("omega_over_p", "start", "printed", "found"),
-    [
-        (3.07, (0.3, 0.0), (3.2, 3.2), (3.1510, 3.1510)),
-        (1.9, (0.5, 0.0), (8.2, 6.0), (8.2258, 6.0155)),
-        (4.9, (0.4, 0.3), (3.8, 3.8), (3.7911, 3.7911)),
-        (4.14, (0.5, 0.3), (5.6, 4.0), (5.6254, 3.9649)),
-    ],
-    ids="ABCD",
-)
-def test_hogans_steady_states(omega_over_p, start, printed, found):
-    """Largest rotations to either side [deg], the larger first."""
+STEADY = {
+    3.07: ((0.3, 0.0), (3.2, 3.2), (3.1510, 3.1510)),
+    1.9: ((0.5, 0.0), (8.2, 6.0), (8.2258, 6.0155)),
+    4.9: ((0.4, 0.3), (3.8, 3.8), (3.7911, 3.7911)),
+    4.14: ((0.5, 0.3), (5.6, 4.0), (5.6254, 3.9649)),
+}
+"""omega/p -> the start in alpha and p alpha, and the largest rotations to either side [deg]."""
+
+
+@pytest.mark.parametrize("omega_over_p", STEADY)
+def test_hogans_steady_states(omega_over_p):
+    """Also period by period, from the state that the last one left: nothing drifts with time."""
+    start, printed, found = STEADY[omega_over_p]
     block = block_of(0.18, 2.0, 0.88)
-    begun = (start[0] * block.alpha, start[1] * block.alpha * block.p)
+    state = begun = (start[0] * block.alpha, start[1] * block.alpha * block.p)
     theta = after(block, 2.0, omega_over_p, 400, begun, last=8)
     sides = sorted(np.degrees([theta.max(), -theta.min()]), reverse=True)
     assert sides == pytest.approx(found, rel=2e-4)
     assert np.round(sides, 1) == pytest.approx(printed)
+    whole = shaken(block, 2.0, omega_over_p, 400)
+    one = replace(whole, half_cycles=2)
+    for _ in range(400):
+        history = simulate(block, one, start=state, times=[one.duration]).history
+        state = (float(history.theta[0]), float(history.velocity[0]))
+    end = simulate(block, whole, start=begun, times=[whole.duration]).history
+    # the phase of a time keeps 1e-16 of it, here some 4e-13 rad of a period
+    assert float(end.theta[0]) == pytest.approx(state[0], abs=1e-11)
 
 
 @pytest.mark.parametrize(("beta", "period"), [(3.1, 1), (3.2, 2), (3.21, 4), (3.23, 8)])
@@ -179,3 +190,38 @@ def test_a_drop_without_friction():
     """Siconos prints 16 digits of the time [s] and the rate [rad/s] of the first strike."""
     time, rate = frictionless_fall(RigidBlock(width=1.0, height=0.5), math.pi / 3.0)
     assert (time, rate) == pytest.approx((0.587477974574, 4.130760093380), abs=5e-13)
+
+
+R, W = 0.925, 4.0
+ORBITING = RigidBlock(width=0.18, height=1.0, restitution=R)
+BIRTH, LOSS = 0.449115, 1.640448
+"""Amplitudes over alpha g between which the linear block has a stable orbit with a strike after
+every third half period, as printed in the 10th World Conference on Earthquake Engineering, 1992,
+pp. 3973-3977, eqs. (11)-(19)."""
+
+
+def impact_gaps(beta, periods=600):
+    """Return the half periods of shaking between late impacts and the rates after them, from near
+    the phase at which an orbit's swing to the right begins."""
+    omega, rise = W * ORBITING.p, math.tanh(1.5 * math.pi / W)
+    impact = math.atan2((1.0 + R) / rise, (1.0 - R) * W) + math.pi - math.asin(BIRTH / beta)
+    motion = SinePulse(
+        amplitude=beta * ORBITING.alpha * ORBITING.gravity,
+        omega=omega,
+        half_cycles=2 * periods,
+        phase=impact + 0.5 * math.pi,
+    )
+    start = (0.0, 1.13 * ORBITING.alpha * ORBITING.p)
+    response = simulate(ORBITING, motion, "housner", start, duration=motion.duration)
+    late = [i for i in response.impacts if i.time > 0.9 * motion.duration]
+    gaps = np.diff([i.time for i in late]) * omega / math.pi
+    return gaps, np.abs([i.velocity_after for i in late])
+
+
+def test_the_solver_settles_on_the_orbit_up_to_its_loss():
+    """Below the limit every swing lasts three half periods; above it swings differ in turn."""
+    gaps, speeds = impact_gaps(0.99 * LOSS)
+    assert gaps == pytest.approx(3.0, abs=1e-6)
+    assert speeds == pytest.approx(speeds[0], rel=1e-6)
+    gaps, speeds = impact_gaps(1.01 * LOSS)
+    assert np.ptp(speeds) > 1e-3 * speeds[0]

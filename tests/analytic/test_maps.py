@@ -27,10 +27,11 @@ def onset_of(model, alpha):
 
 
 @pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("half_cycles", [1, 3])
+@pytest.mark.parametrize("half_cycles", [1, 3, 12, 31, 200])
 def test_outcomes_are_those_of_the_peaks(model, half_cycles):
+    """floor(k pi/pi) is k - 1 for k = 11, 15, 22, 30, …: half cycles are counted, not computed."""
     draw = np.random.default_rng(half_cycles)
-    count = 2000
+    count = 2000 if half_cycles < 10 else 200
     alpha = draw.uniform(0.03, 1.2, count)
     amplitude = np.tan(alpha) * np.exp(draw.uniform(-0.2, 2.5, count)) * draw.choice([-1, 1], count)
     omega = np.exp(draw.uniform(math.log(0.05), math.log(20.0), count))
@@ -48,20 +49,6 @@ def test_what_no_number_tells_of_has_failed(amplitude):
     """The margin of this case is nan; its mode said that it survives."""
     found = overturning_modes(0.76, amplitude, 0.12, 1)
     assert (int(found.mode), peak_ratios(0.76, amplitude, 0.12, 1)[1]) == (FAILED, Outcome.FAILED)
-
-
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("half_cycles", [12, 16, 31, 200])
-def test_long_pulses_are_solved_as_short_ones(model, half_cycles):
-    """floor(k pi/pi) is k - 1 for k = 11, 15, 22, 30, …: half cycles are counted, not computed."""
-    draw = np.random.default_rng(half_cycles)
-    alpha = np.arctan(1.0 / draw.uniform(1.5, 10.0, 200))
-    amplitude = MODELS[model].onset(alpha) * draw.uniform(1.05, 6.0, 200)
-    omega = np.exp(draw.uniform(math.log(0.5), math.log(10.0), 200))
-    found = overturning_modes(alpha, amplitude, omega, half_cycles, model)
-    peaks, _ = peak_ratios(alpha, amplitude, omega, half_cycles, model)
-    assert not np.any(found.mode == FAILED)
-    assert np.array_equal(found.mode >= 0, np.isinf(peaks))
 
 
 @settings(max_examples=150, deadline=None)
