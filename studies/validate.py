@@ -20,7 +20,7 @@ from studies.cases.drawn import Drawn, RandomCase, census, draw
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import Count, one_of, refuse_both, refuse_given
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.options import CASE_BYTES, EffortOptions, Yours, refuse_excess
+from studies.kit.options import EffortOptions, Yours
 from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
 from studies.measures.differences import (
@@ -90,7 +90,6 @@ def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
         refuse_given({"tests": options.tests}, "only with --halves")
     cases, tests = options.cases or CASES[options.halves][quick], options.tests or TESTS[quick]
     options.refuse_idle(sources)
-    refuse_excess(f"--cases is {cases}", 2 * cases * len(sources) * CASE_BYTES)
     if options.halves:
         return _with_halves(sources, cases, tests, options)
     return [

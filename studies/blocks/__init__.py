@@ -27,7 +27,7 @@ from studies.cases.accelerograms import Baseline, baseline_note, read_record
 from studies.cases.paper import free_rocking_window
 from studies.kit import arguments
 from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
-from studies.kit.options import CASE_BYTES, Running, refuse_excess
+from studies.kit.options import Running
 from studies.kit.say import capital, out_of
 from studies.kit.scene_options import refuse_endless
 from studies.kit.store import provenance_of
@@ -246,9 +246,6 @@ def command(
     grounds = {path.name: read_record(path, units, baseline, record_dt) for path in record}
     listed = read_cabinets(cabinets)
     sources = tuple(dict.fromkeys(["exact", *sources]))
-    cases = len(listed) * len(grounds) * len(scale)
-    asked = f"the list is {str(cabinets)!r}, of {len(listed)} blocks"
-    refuse_excess(asked, cases * len(sources) * CASE_BYTES)
     given = {"sources": sources, "scale": scale, "units": units, "baseline": baseline}
     found = jobs(listed, grounds, scale, sources, baseline or "")
     code = STUDY.carry_out(out, found, running, record=[*grounds], record_dt=record_dt, **given)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from engines.declaration import AT_REST
 from studies.drawing.facets import error_scale, key, preset_dots, rows, sheet
-from studies.drawing.labels import Name, beside
 from studies.drawing.styles import line_of, name_of, style_of, title_of
 from studies.kit.say import part
 from studies.measures.presets import in_order, look_of
@@ -47,10 +48,8 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
     error_scale(grid[1, 0].yaxis, FLOOR, CEILING)
     for axes in grid.flat:
         axes.grid(alpha=0.25)
-    levels = [_name(source, 4.1, _level(number)) for number, source in enumerate(sources)]
-    beside(upper, levels, 7.5 if len(sources) < 9 else 6.0)
-    last = known.groupby("source", sort=False)[["omega_over_p", "error"]].last()
-    beside(lower, [_name(str(source), x, error) for source, x, error in last.itertuples()])
+    looks = [Line2D([], [], label=name_of(source), **_look(source)) for source in sources]
+    key(drawing, looks, 6, 8.0)
     pulse = f"{first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
     narrowest, *others = (f"B = {width_m:g} m" for width_m in widths)
     pale = f"; pale, and the same by similarity: {', '.join(others)}" if others else ""
@@ -62,9 +61,7 @@ def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
     for number, source in enumerate(sources):
         style = style_of(source)
         points = panel[panel["source"] == source]
-        line = {"color": style.colour, "linestyle": style.line, "linewidth": style.width}
-        look = line if style.line else {**style.points(4.0), "zorder": 4}
-        axes.plot(points["omega_over_p"], points["survived"], **look)
+        axes.plot(points["omega_over_p"], points["survived"], **_look(source))
         beyond = points.loc[points["survived"] > TOP, ["omega_over_p", "survived"]]
         for x, peak in beyond.itertuples(index=False):
             axes.plot(x, TOP - 0.04, marker=6, color=style.colour, markersize=6, zorder=5)
@@ -95,8 +92,10 @@ def _errors(axes: Axes, known: pd.DataFrame, narrowest: float) -> None:
         axes.plot(points["omega_over_p"], points["error"], **look, **pale)
 
 
-def _name(source: str, x: float, y: float) -> Name:
-    return Name(name_of(source), x, y, style_of(source).colour)
+def _look(source: str) -> dict[str, Any]:
+    style = style_of(source)
+    line = {"color": style.colour, "linestyle": style.line, "linewidth": style.width}
+    return line if style.line else {**style.points(4.0), "zorder": 4}
 
 
 def draw_overview(table: pd.DataFrame) -> Figure:

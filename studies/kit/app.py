@@ -84,7 +84,7 @@ def run(commands: Mapping[str, str], arguments: list[str]) -> int:
         say.give_up_output()  # whoever read the output has gone
         return 128 + signal.SIGPIPE
     except (OSError, ImportError) as error:
-        return say.refuse(say.reason(error, arguments))
+        return say.refuse(say.reason(error))
     except (ArithmeticError, MemoryError, ValueError) as error:
         if REFUSAL.match(str(error)):
             return say.refuse(str(error))

@@ -17,12 +17,6 @@ from studies.sources.registry import Source, resolve
 
 Row = dict[str, Any]
 
-LONG_S, STEP_S = 1.0, {"peer": 1e-6}
-"""A solve that may take longer [s] has a process of its own; a compiled step takes 1e-7 s."""
-SLOWEST_RETURN = 40.0
-"""Time, in units of 1/p, in which a free block turns or is lost, if it does so at all: so near to
-the separatrix that it takes longer, it would be within e^-40 of it, which no double is."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Question:
@@ -77,12 +71,8 @@ class Job:
 
     @property
     def needs_process(self) -> bool:
-        """Whether its source may crash, or take so long that one must be able to stop it."""
-        case, kind = self.case, self.asked.kind
-        observed = case.motion.duration if case.duration is None else case.duration
-        most = observed * case.system.p + SLOWEST_RETURN
-        long = most * STEP_S.get(kind, 1e-7) > LONG_S * float(self.options.get("step", 1e-3))
-        return kind == "engine" or long
+        """Whether its source may crash, or not come to an end."""
+        return self.asked.kind == "engine"
 
 
 def plain(value: Any) -> Any:

@@ -1,10 +1,7 @@
 """Options that commands share: each a dataclass, which is the type of a command's parameter."""
 
-import contextlib
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
@@ -25,9 +22,6 @@ from studies.kit.arguments import (
 )
 from studies.kit.store import usable_cores
 from studies.sources.registry import Accuracy, Effort, resolve
-
-CASE_BYTES, PROCESS_BYTES = 4e3, 2e8
-"""About what a case with its row holds of memory, and what a process with an engine does."""
 
 
 @Parameter(name="*")
@@ -50,7 +44,6 @@ class Computing:
     cluster: str | None = None
 
     def __post_init__(self) -> None:
-        refuse_excess(f"--jobs is {self.jobs}", (self.jobs or 1) * PROCESS_BYTES)
         if self.cluster is not None:
             refuse_given({"jobs": self.jobs}, "only without --cluster")
 
@@ -138,13 +131,3 @@ class Yours:
             if self.dt is not None and source.stepping:
                 chosen[name]["step"] = self.dt * system.p
         return chosen
-
-
-def refuse_excess(asked: str, held: float) -> None:
-    """Refuse what needs more memory [byte] than there is, or than its container may use."""
-    limits = [float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))]
-    with contextlib.suppress(OSError, ValueError):  # a container without a limit says "max"
-        limits.append(float(Path("/sys/fs/cgroup/memory.max").read_text()))
-    if held > (there := min(limits)):
-        needs = f"that needs about {held / 1e9:.0f} GB of memory"
-        raise BadInputError(f"{asked}; {needs}, and at most {there / 1e9:.0f} GB are there")

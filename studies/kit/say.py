@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import errno
 import io
 import math
 import os
 import sys
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
 
@@ -49,22 +47,13 @@ def one_line(error: BaseException) -> str:
         return kind
 
 
-def reason(error: Exception, arguments: Sequence[str]) -> str:
-    """Return why a command could not go on; of a file or folder also the option that names it."""
-    if not isinstance(error, OSError):
-        while isinstance(error.__cause__, Exception):
-            error = error.__cause__
-        return one_line(error)
-    if not error.filename:
-        full = error.errno == errno.ENOSPC
-        return f"the output cannot be written; {error.strerror}" if full else str(error)
-    option, place = "", Path(os.fsdecode(error.filename))
-    for word in arguments:
-        option, _, value = word.partition("=") if word.startswith("--") else (option, "", word)
-        if option and value and place.is_relative_to(value):
-            inside = "" if place == Path(value) else f"{place.relative_to(value)}: "
-            return f"{option} is {value!r}; {inside}{error.strerror}"
-    return str(error)
+def reason(error: Exception) -> str:
+    """Return why a command could not go on."""
+    if isinstance(error, OSError):
+        return str(error)
+    while isinstance(error.__cause__, Exception):
+        error = error.__cause__
+    return one_line(error)
 
 
 def _shortened(text: str, longest: int) -> str:

@@ -69,10 +69,11 @@ class Store:
         self._began, self._computed = time.perf_counter(), 0
         self._taken: list[Row] = []
         self._first = not are_compiled(SOURCES)
-        fresh = not (folder / ROWS).exists()
-        if fresh and folder.is_dir() and not _may_be_filled(folder, study, table):
-            raise FolderError(folder, f"it must be new or empty, or hold the {ROWS} of this study")
         try:
+            fresh = not (folder / ROWS).exists()
+            if fresh and folder.is_dir() and not _may_be_filled(folder, study, table):
+                words = f"it must be new or empty, or hold the {ROWS} of this study"
+                raise FolderError(folder, words)
             folder.mkdir(parents=True, exist_ok=True)
             self._base = sqlite3.connect(folder / ROWS, timeout=0.2, isolation_level=None)
             # a row that is written survives kill -9; the lock ends with the process

@@ -13,7 +13,7 @@ from matplotlib.text import Text
 from engines import ENGINES
 from studies import contact
 from studies.drawing.contact import MATTER, draw_contact
-from studies.drawing.labels import Name, around, spread
+from studies.drawing.labels import Name, around
 from studies.drawing.linearizations import ONSETS
 from studies.drawing.overturning import VERDICTS
 from studies.drawing.precision import engine_in
@@ -81,14 +81,6 @@ def test_no_engine_takes_the_look_of_another():
     most = len(ENGINE_COLOURS) * len(ENGINE_MARKERS)
     assert len({look_at(place) for place in range(most)}) == most > 70
     assert len({look_at(place)[0] for place in range(8)}) == 8
-
-
-def test_names_that_are_too_near_are_moved_apart_alike():
-    assert spread([0.9, 0.1, 0.5], 0.2) == pytest.approx([0.9, 0.1, 0.5])
-    moved = spread([0.5, 0.5, 0.52, 0.9], 0.1)
-    assert np.diff(moved[:3]) == pytest.approx([0.1, 0.1])
-    assert moved[:3].mean() == pytest.approx(np.mean([0.5, 0.5, 0.52]))
-    assert moved[3] == 0.9
 
 
 def test_names_keep_clear_of_each_other_of_lines_and_of_words():

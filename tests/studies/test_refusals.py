@@ -120,7 +120,6 @@ validate --out DIR --halves --sources exact | 'exact'; with --halves it must be 
 validate --out DIR --halves --sources drake | steps that can be halved
 validate --out DIR --sources exact --step 0.1 | --sources must name a solver or an engine
 validate --out DIR --dt 0.01 --step 0.1 --sources mujoco:fixed | --dt is 0.01 and --step is 0.1
-validate --out DIR --cases 1000000000 | GB of memory
 validate --out DIR --scene slide | among block, frame
 validate --out DIR --seed -1 | --seed is '-1'
 
