@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from analytic import MODELS, RigidBlock, simulate
 from analytic.motion import Delayed
-from analytic.response import Outcome
 from studies.cases.paper import PULSES
 from studies.cases.refusal import BadInputError
 from studies.cases.window import LEAST_ONSETS, Window, pulse_of
@@ -274,23 +273,12 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         found = {title: wide.reset_index()}
         if "differences" in tables:
             found["Parts of the map that a model gets wrong"] = tables["differences"]
-        found["What exact motions that survive need"] = needs(tables["validity"])
     if "parts" in tables:
         found |= {
             "Pulses by the width of the block": tables["parts"],
             "Pulses by the rest before them": tables["rests"],
         }
     return found
-
-
-def needs(held: pd.DataFrame) -> pd.DataFrame:
-    """Return how many survivors lift off, from which amplitude on, and the others' friction."""
-    survives = held["outcome"] == Outcome.ROCKED.value
-    lifts = survives & (held["min_normal"] < 0.0)
-    friction = held.loc[survives & ~lifts, "friction_needed"]
-    counts = {"cells": len(held), "survive": survives.sum(), "lift_off": lifts.sum()}
-    ends = {"least_friction": friction.min(), "median_friction": friction.median()}
-    return pd.DataFrame([{**counts, "from_onsets": held.loc[lifts, "onsets"].min(), **ends}])
 
 
 def figures(tables: Tables) -> Mapping[str, Figure]:

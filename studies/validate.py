@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from itertools import islice, pairwise
+from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Annotated
 
@@ -25,7 +25,6 @@ from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
 from studies.measures.differences import (
     WELL_CONDITIONED,
-    conditioning_of,
     sensitivity_of,
     with_reference,
 )
@@ -124,38 +123,14 @@ def _rocks(case: RandomCase) -> bool:
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return errors in bands and what was drawn, or factors."""
+    """Return errors and what was drawn, or factors."""
     if "half" in rows:
         lines = beside_errors(rows)
         return {"estimate": rows, "estimates": lines, "factors": factors(lines)}
     errors = with_reference(rows.drop(columns="seed"))
     scene: Drawn = "frame" if "load" in rows else "block"
     left = census(int(rows["seed"].iloc[0]), rows["case"].nunique(), scene)
-    return {"errors": errors, "drawn": left, "bands": bands(errors)}
-
-
-def bands(errors: pd.DataFrame) -> pd.DataFrame:
-    """Return a line for each source and band of the cases that survive in the exact solution."""
-    rocked = errors[errors["exact_outcome"] == "rocked"]
-    rocked = rocked.assign(size=rocked["error"].abs())
-    ways = (
-        ("peak", rocked["exact_peak"], (0.01, 0.1, 0.5)),
-        ("κ", conditioning_of(rocked), (10.0, 100.0)),
-    )
-    found = []
-    for by, values, ends in ways:
-        between = [f"from {low:g} to {high:g}" for low, high in pairwise(ends)]
-        names = [f"below {ends[0]:g}", *between, f"above {ends[-1]:g}"]
-        band = pd.cut(values, [0.0, *ends, inf], right=False, labels=names)
-        rows = rocked.assign(by=by, band=band).sort_values("band", kind="stable")
-        lines = rows.groupby(["source", "by", "band"], sort=False, observed=True).agg(
-            cases=("agrees", "size"),
-            right=("agrees", "sum"),
-            median_error=("size", "median"),
-            max_error=("size", "max"),
-        )
-        found.append(lines.reset_index().astype({"band": str}))
-    return pd.concat(found, ignore_index=True)
+    return {"errors": errors, "drawn": left}
 
 
 def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
@@ -209,7 +184,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         f"The same where S < {WELL_CONDITIONED:g}: by how many per cent a peak moves\nfor one of "
         "the pulse, or of the velocity ratio of impacts": quantiles(errors[s < WELL_CONDITIONED]),
         "Errors over S": quantiles(errors.assign(error=errors["error"] / s)),
-        **{f"In bands of {by}": each for by, each in tables["bands"].groupby("by", sort=False)},
         "The largest errors": worst(errors, 5),
         "Cases that were drawn": tables["drawn"],
     }
@@ -253,8 +227,8 @@ STUDY = Study(
     help="""Random blocks: H/B from 1.2 to 12, B from 0.02 to 10 m; pulses of 1.02 to 4 onsets.
 
 Outcomes, quantiles of the error, and how far a small error of the pulse moves the peak of each
-case: its condition numbers, and its sensitivity to errors of 1e-6 and 1e-4. Writes errors.csv,
-drawn.csv and bands.csv. With --halves it writes estimate.csv, estimates.csv and factors.csv: how
+case: its condition numbers, and its sensitivity to errors of 1e-6 and 1e-4. Writes errors.csv
+and drawn.csv. With --halves it writes estimate.csv, estimates.csv and factors.csv: how
 far off an answer is according to the engine itself at half the step. Each needs a folder of its
 own.""",
     sources=core_sources(),

@@ -106,14 +106,10 @@ def conditioning_of_one(
     return {"kappa": kappa, "sensitivity": sensitivity(block, motion, start=start)}
 
 
-def conditioning_of(cases: pd.DataFrame) -> pd.Series[float]:
-    """Return the larger of abs(kappa) and abs(kappa_eta), at least 1."""
-    return cases[["kappa", "kappa_eta"]].abs().max(axis=1, skipna=False).clip(lower=1.0)
-
-
 def sensitivity_of(cases: pd.DataFrame) -> pd.Series[float]:
-    """Return what errors are judged against: the larger of `conditioning_of` and sensitivity."""
-    return conditioning_of(cases).clip(lower=cases["sensitivity"])
+    """Return what errors are judged against: the largest of κ, κ of η and sensitivity, and 1."""
+    kappas = cases[["kappa", "kappa_eta"]].abs().max(axis=1, skipna=False)
+    return kappas.clip(lower=1.0).clip(lower=cases["sensitivity"])
 
 
 def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:

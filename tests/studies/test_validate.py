@@ -1,4 +1,4 @@
-"""Random cases: what is drawn, errors in bands, estimates from half the step."""
+"""Random cases: what is drawn, errors, estimates from half the step."""
 
 import math
 from itertools import islice
@@ -38,7 +38,7 @@ from studies.measures.halving import (
 )
 from studies.measures.published import PUBLISHED
 from studies.sources.registry import core_sources
-from studies.validate import STUDY, Options, bands, beside_errors, finding, jobs, quantiles, worst
+from studies.validate import STUDY, Options, beside_errors, finding, jobs, quantiles, worst
 
 
 def test_cases_keep_their_ranges_and_their_reference_valid():
@@ -71,21 +71,14 @@ def table(rows, **columns):
     return pd.DataFrame({"source": rows, **ordinary, **columns})
 
 
-def test_bands_hold_the_errors_of_what_survives():
+def test_quantiles_are_of_what_survives():
     errors = table(
         ["mujoco"] * 5,
         exact_peak=[0.005, 0.05, 0.1, 0.7, math.inf],
         exact_outcome=["rocked"] * 4 + ["overturned"],
         agrees=[True, True, True, False, True],
         error=[3.66, -0.2, 1e-3, math.nan, math.nan],
-        kappa=[76.0, 2.0, 10.0, -300.0, math.nan],
-        kappa_eta=[1.0, 3.0, 1.0, 1.0, math.nan],
     )
-    found = bands(errors).set_index(["by", "band"])
-    assert list(found["cases"]) == [1, 1, 1, 1, 1, 2, 1]
-    assert found.loc[("peak", "above 0.5"), "right"] == 0
-    assert found.loc[("κ", "from 10 to 100"), "max_error"] == 3.66
-    assert list(found.loc["peak", "median_error"].dropna()) == [3.66, 0.2, 1e-3]
     (line,) = quantiles(errors.assign(outcome="rocked")).to_dict("records")
     assert (line["cases"], line["agree"], line["fall_wrong"]) == (5, 4, 1)
     assert (line["median_error"], line["max_error"]) == (0.2, 3.66)
@@ -196,9 +189,8 @@ def test_above_thirty_estimates_there_is_no_bound():
 
 def test_published_tables_follow_from_published_rows():
     tables = {name: STUDY.read(PUBLISHED / name) for name in ("validate", "estimate")}
-    errors, lines = tables["validate"]["errors"], tables["estimate"]["estimates"]
+    lines = tables["estimate"]["estimates"]
     for made, kept in (
-        (bands(errors), tables["validate"]["bands"]),
         (census(1, 500), tables["validate"]["drawn"]),
         (factors(lines), tables["estimate"]["factors"]),
     ):
