@@ -175,28 +175,3 @@ def test_a_long_record_through_every_source(name):
     exact, response = followed(name, noise(5, 8001, 0.005, 1.3 * ONSET))
     assert len(exact.rests) >= 2
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=2.0 * band(name))
-
-
-def test_a_long_record_costs_a_step_for_each_sample_while_it_rocks():
-    """40 s at 0.005 s. At most a step for each sample, impact, uplift and rest; none at rest."""
-    record = noise(5, 8001, 0.005, 1.15 * ONSET)
-    response = simulate(BLOCK, record)
-    events = len(response.impacts) + len(response.uplifts) + len(response.rests)
-    assert response.outcome is Outcome.ROCKED
-    assert len(response.rests) >= 2
-    assert response.steps <= 8000 + events
-    quiet = Record(dt=0.005, samples=np.concatenate([record.samples, np.zeros(40_000)]))
-    assert simulate(BLOCK, quiet).steps <= response.steps + 2000
-
-
-def test_the_papers_solver_lands_on_samples():
-    """Order 4 along a record, whose corners a step must not pass."""
-    record = noise(8, 40, 0.07, 1.4 * ONSET, width=0.2)
-    times = np.linspace(0, record.duration, 41)
-    exact = simulate(BLOCK, record, times=times)
-    errors = []
-    steps = 0.04 * 0.5 ** np.arange(4)
-    for step in steps:
-        tested = integrate(BLOCK, record, step=step, event_tolerance=1e-14, times=times)
-        errors.append(np.sqrt(np.mean((tested.history.theta - exact.history.theta) ** 2)))
-    assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(4, abs=0.5)

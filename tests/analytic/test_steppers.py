@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from analytic import MODELS, Outcome, RigidBlock, SinePulse, integrate, simulate
+from analytic import MODELS, Outcome, Record, RigidBlock, SinePulse, integrate, simulate
 from analytic.steppers import METHODS
 
 G = 9.81
@@ -20,9 +20,13 @@ ANSWERED = [
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("average-acceleration", 2)])
-def test_order_along_a_response_with_impacts(method, order, model):
+@pytest.mark.parametrize("sampled", [False, True])
+def test_order_along_a_response_with_impacts(method, order, model, sampled):
     onset = MODELS[model].law(BLOCK.alpha, 0.0).onset
     pulse = SinePulse(amplitude=1.08 * onset * G, omega=2 * math.pi, half_cycles=3)
+    if sampled:  # a step must not pass a corner
+        times = np.arange(0.0, pulse.duration, 0.07)
+        pulse = Record(dt=0.07, samples=pulse.acceleration(times))
     duration = pulse.duration + 1.0
     times = np.linspace(0.1, duration, 41)
     exact = simulate(BLOCK, pulse, model, times=times, duration=duration)

@@ -175,26 +175,3 @@ def test_what_is_called_without_effect_has_none_and_the_rest_has(engine, changed
     own, other = peak(engine), peak(engine, **changed)
     assert own > 0.0
     assert (other != own, abs(other - own) > 0.01) == (felt, felt)
-
-
-@pytest.mark.skipif("rapier" not in HERE, reason="it is not installed")
-@pytest.mark.parametrize(
-    ("changed", "felt"),
-    [
-        ({"normalized_allowed_linear_error": 0.0, "contact_clustering": False}, False),
-        ({"normalized_max_corrective_velocity": 0.3, "max_ccd_substeps": 0}, False),
-        ({"normalized_prediction_distance": 0.002}, True),
-    ],
-)
-def test_which_of_rapier_s_own_numbers_the_block_feels(changed, felt, monkeypatch):
-    module, own = importlib.import_module("engines.rapier.build"), peak("rapier")
-    build = module.build
-
-    def otherwise(*arguments):
-        world, parameters, *rest = build(*arguments)
-        for name, value in changed.items():
-            setattr(parameters, name, value)
-        return world, parameters, *rest
-
-    monkeypatch.setattr(module, "build", otherwise)
-    assert (peak("rapier") != own) == felt

@@ -11,7 +11,7 @@ import pytest
 from known import ScriptedWorld, exactly, watched
 from uses import BLOCK, pulse, scene
 
-from analytic import Record, SinePulse, simulate
+from analytic import Record, simulate
 from engines.declaration import Stepping
 from engines.run.ground import mean_velocity_of
 from engines.run.steps import loads_of
@@ -70,13 +70,6 @@ def test_through_an_impact_the_contact_alone_acts(steps):
     assert max(step.dt_s for step in strikes) < 1e-6 / BLOCK.p
 
 
-class HangsInTheAir(ScriptedWorld):
-    """Is lifted at once, and stays where it is."""
-
-    def script(self, time, rate_s):
-        return -0.1 * BLOCK.alpha, 0.0
-
-
 class Bounces(ScriptedWorld):
     """Falls evenly, and is thrown back as fast, twice as soon as it would meet the base."""
 
@@ -119,14 +112,6 @@ def test_no_ordinary_step_ends_on_the_onset(count):
     assert last.dt_s < 0.01 * onset / count
 
 
-def test_nothing_strikes_that_does_not_come_down():
-    asked = scene(MOTION, accuracy="loose", duration=MOTION.duration)
-    world = HangsInTheAir(asked)
-    response = watched(world, asked, Stepping.LANDING)
-    assert response.impacts == ()
-    assert {step.phase for step in world.steps[1:]} <= {ContactPhase.REST, ContactPhase.SWING}
-
-
 def test_an_impact_that_comes_before_the_base_is_met_is_no_impact():
     """It turns back in the air: an approach at most, and steps as long as before after it."""
     asked = scene(pulse(1.3, 3.0), accuracy="loose", start=(0.1, 0.0), duration=3.0)
@@ -138,24 +123,6 @@ def test_an_impact_that_comes_before_the_base_is_met_is_no_impact():
 
 
 WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])
-
-
-@pytest.mark.parametrize("excess", [1e-9, 0.1, 5.0])
-def test_loads_are_found_however_short(excess):
-    pulse = SinePulse(amplitude=1.0 + excess, omega=3.0, half_cycles=5)
-    loads = loads_of(pulse, 1.0)
-    level = math.asin(1.0 / (1.0 + excess))
-    begins = [(k * math.pi + level) / 3.0 for k in range(5)]
-    ends = [((k + 1) * math.pi - level) / 3.0 for k in range(5)]
-    # near a crest the time of a crossing is known to the root of the rounding only
-    assert [load.begin for load in loads] == pytest.approx(begins, rel=1e-7)
-    assert [load.end for load in loads] == pytest.approx(ends, rel=1e-7)
-    assert [load.side for load in loads] == [-1.0, 1.0, -1.0, 1.0, -1.0]
-
-
-def test_a_motion_below_the_onset_loads_nothing_however_long():
-    pulse = SinePulse(amplitude=0.999, omega=1e-6, half_cycles=2)
-    assert loads_of(pulse, 1.0) == []
 
 
 def test_the_mean_velocity_of_the_base_is_its_displacement_over_time():

@@ -3,7 +3,6 @@
 import functools
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from declared import run
 
@@ -13,7 +12,6 @@ from engines.declaration import BEST, OWN_STEPS
 from engines.mujoco import TUNED
 from engines.mujoco.build import MujocoSettings
 from engines.pybullet.build import BulletSettings, BulletWorld
-from engines.run.run import build
 from studies.cases.paper import chosen_cases
 from studies.cases.variants import variants
 
@@ -95,15 +93,6 @@ def test_a_variant_differs_from_its_preset():
 def test_what_is_not_allowed_is_named(settings, values, message):
     with pytest.raises(ValueError, match=message):
         settings(**values)
-
-
-def test_solref_and_margin_reach_the_library():
-    settings = of("mujoco", BEST, "reference: 2 dt 1").settings
-    use = ENGINES["mujoco"].use(scene(preset=BEST, settings={**settings, "margin": 1e-3}))
-    world = build(use)
-    assert np.all(world.model.pair_solref == [2.0 * use.dt_s, 1.0])
-    assert world.model.pair_margin == pytest.approx(1e-3 * CASE.block.width)
-    world.close()
 
 
 def test_stiffness_reads_back_where_the_library_tells(monkeypatch):
