@@ -1,6 +1,10 @@
-"""The engine of one file with a fault of its own in each class."""
+"""Engines with a fault of their own in each class, most of them the engine of one file."""
 
 from my_engine import World
+from rocking_moreau import MoreauSettings, MoreauWorld
+
+from engines.registry import PlainSettings
+from engines.world import Moment
 
 
 class Turned(World):
@@ -23,10 +27,18 @@ class Mirrored(Turned):
         self.body.angle, self.body.angular_velocity = -self.body.angle, -self.body.angular_velocity
 
 
-def lacking(name):
-    return type("Lacking", (World,), {name: None})
+class Moreau(MoreauWorld):
+    """Its own moment is END."""
+
+    moment = Moment.MIDDLE
+
+    def __init__(self, scene, settings: PlainSettings, dt_s):
+        super().__init__(scene, MoreauSettings(friction=settings.friction, closing=True), dt_s)
 
 
-NoStep, NoState, NoFault, NoClose, NoMoment = map(
-    lacking, ("step", "state", "fault", "close", "moment")
+Middle, End, NoMoment = (
+    type("Staggered", (World,), {"moment": each}) for each in (Moment.MIDDLE, Moment.END, None)
+)
+NoStep, NoState, NoFault, NoClose = (
+    type("Lacking", (World,), {name: None}) for name in ("step", "state", "fault", "close")
 )

@@ -180,10 +180,10 @@ NO_WORLDS = {
     "wrong:Turned": "theta -0.0804 of a block put to 0.0804",
     "wrong:Backwards": "rate -0.0982 of a block put to 0.0982",
     "wrong:Mirrored": "pulled towards +x, its block turns to theta -0.0",
-    "staggered:Middle": "hold +1 of a step from the Moment.MIDDLE that its world declares; it must "
+    "wrong:Middle": "hold +1 of a step from the Moment.MIDDLE that its world declares; it must "
     "declare Moment.NEXT",
-    "staggered:End": "must declare Moment.NEXT",
-    "staggered:Moreau": "must declare Moment.END",
+    "wrong:End": "must declare Moment.NEXT",
+    "wrong:Moreau": "must declare Moment.END",
     "hostile:Calm": "",  # what does not move has no moment
     "my_engine:World": "",
 }

@@ -23,17 +23,24 @@ from studies.sources.registry import SOURCES, resolve
 STUDIES = {
     "histories": ("--figure", "4", "--sources", "exact", "modified"),
     "linearizations": (),
-    "contact": ("--quick", "--engines", "pymunk"),
-    "overturning": ("--quick", "--sources", "exact", "housner"),
-    "precision": ("--quick", "--sources", "exact", "rk4"),
+    "contact": ("--quick", "--engines", "moreau"),
+    "overturning": ("--quick", "--sources", "exact", "housner", "moreau"),
+    "precision": ("--quick", "--sources", "exact", "moreau"),
     "restitution": ("--engines", "pymunk"),
-    "scenes": ("--quick", "--sources", "pymunk:fixed"),
-    "stability": ("--quick", "--sources", "exact", "rk4"),
-    "sweep": ("--figure", "6", "--sources", "exact", "modified"),
-    "validate": ("--cases", "3", "--sources", "exact", "rk4"),
+    "scenes": ("--quick", "--sources", "pymunk:fixed", "moreau"),
+    "stability": ("--quick", "--sources", "exact", "moreau", "moreau:fixed", "moreau:naive"),
+    "sweep": ("--figure", "6", "--accuracy", "loose", "--sources", "exact", "modified", "moreau"),
+    "validate": ("--cases", "3", "--sources", "exact", "moreau"),
 }
-"""Study -> a run of it that takes seconds."""
-QUICKEST = ("histories", "linearizations", "stability", "sweep", "validate")
+"""Study -> a run of it that takes seconds, with an engine of another package (tests/plugin)."""
+QUICKEST = ("histories", "linearizations", "validate")
+OTHERWISE = {"advise", "animate", "blocks", "compare", "export", "doctor", "report"}
+OTHERWISE |= {"readme", "score"}
+"""Commands of one case, of lists and of all studies."""
+
+
+def test_every_study_is_here():
+    assert set(COMMANDS) == STUDIES.keys() | OTHERWISE
 
 
 @pytest.mark.parametrize(
@@ -53,6 +60,7 @@ def test_a_study_is_drawn_and_worded_from_its_tables_alone(name, tmp_path, capsy
     assert pictures and all(study.caption_of(path.stem) != path.stem for path in pictures)
     assert set(study.figures(tables)) == {path.stem for path in pictures}
     before = read_all(tmp_path, "*.csv")
+    assert "moreau" not in arguments or any(b"moreau" in text for text in before.values())
     assert run(arguments) == 0
     last = json.loads((tmp_path / "provenance.json").read_text())["runs"][-1]
     assert (last["computed"], last["rows"] > 0) == (0, True)
