@@ -12,26 +12,22 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import pandas as pd
 
-from analytic import Delayed, Record, RigidBlock, RockingFrame, SinePulse, SlidingBlock, Still
+from analytic import Delayed, Record, RockingFrame, SinePulse, SlidingBlock, Still
 from analytic.block import GRAVITY
-from analytic.motion import Motion
 from analytic.response import Outcome, Reason, Response
 from analytic.simulate import simulate
-from engines import Scene
 from engines.declaration import DEFAULT
-from engines.run.look import Monitor
-from engines.run.run import LAG, Stepper, build
+from engines.run.run import LAG
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import listed, part
 from studies.kit.study import Study, Tables
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of
-from studies.measures.wrongness import counted, kinds_of, outcomes_of
 from studies.sources.registry import Source, core_sources, resolve
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FRAME, BLOCK = RockingFrame(width=0.5, height=1.5, load=2.0), RigidBlock(width=0.5, height=1.5)
+FRAME = RockingFrame(width=0.5, height=1.5, load=2.0)
 PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
 """Amplitude [g] and circular frequency [rad/s] of full sines."""
 RIDE = SinePulse(amplitude=1.0, omega=2.0 * math.pi, half_cycles=4)
@@ -41,25 +37,23 @@ SHARED = ("outcome", "peak_ratio", "impacts", "steps", "wall_s", "message", "rea
 SEEN = {
     "frame": ("parting", "tilt", "drift_m"),
     "slide": ("place_m", "lift_m", "turn_rad"),
-    **dict.fromkeys(("floor", "block"), (LAG,)),
+    "floor": (LAG,),
 }
 """What an engine shows of a scene besides."""
 LABELS = {
-    "frame": ("columns", "load", "amplitude_g", "omega", "extreme", "phase"),
+    "frame": ("columns", "load", "amplitude_g", "omega", "phase"),
     "slide": ("case",),
     "floor": ("floor", "rest_s"),
-    "block": ("amplitude_g", "omega", "half_cycles"),
 }
 MEASURED = {
     "frame": ("exact", "right", "error"),
     "slide": ("slips", "exact_slips", "slip_error_m"),
     "floor": ("carried",),
-    "block": ("exact", "own_exact", "error", "own_error"),
 }
 """Scene -> the columns of its table before source, and after what all have."""
 TYPES = {
-    **dict.fromkeys(("columns", "phase", "slips", "exact_slips", "half_cycles"), int),
-    **dict.fromkeys(("extreme", "right"), bool),
+    **dict.fromkeys(("columns", "phase", "slips", "exact_slips"), int),
+    "right": bool,
 }
 """Of columns that hold no other numbers or words."""
 
@@ -67,8 +61,7 @@ TYPES = {
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     """Return the job of every case and source: of frames first."""
     asked = [resolve(name) for name in sources]
-    beyond = [*_slides(asked, quick), *_floors(asked), *_blocks(asked, quick)]
-    return [*_frames(asked, quick), *beyond]
+    return [*_frames(asked, quick), *_slides(asked, quick), *_floors(asked)]
 
 
 def _job(scene: str, labels: Row, case: Question, source: Source, **options: Any) -> Job:
@@ -76,14 +69,8 @@ def _job(scene: str, labels: Row, case: Question, source: Source, **options: Any
 
 
 def _frames(sources: Sequence[Source], quick: bool) -> Iterator[Job]:
-    """Yield the usual frames and the extreme ones."""
-    posed = [(2, 2.0, *PULSES[0], False)]
-    if not quick:
-        frames = product((0.5, 2.0, 4.0), (2, 3), PULSES)
-        posed = [(columns, load, *pulse, False) for load, columns, pulse in frames]
-        extremes = ((2, 1e-3), (2, 0.1), (2, 10.0), (2, 1e3), (5, 2.0))
-        posed += [(*frame, *PULSES[0], True) for frame in extremes]
-    for columns, load, amplitude_g, omega, extreme in posed:
+    posed = product((0.5, 2.0, 4.0), (2, 3), PULSES) if not quick else [(2.0, 2, PULSES[0])]
+    for load, columns, (amplitude_g, omega) in posed:
         case = Question(
             system=RockingFrame(width=0.5, height=1.5, columns=columns, load=load),
             motion=SinePulse.in_g(amplitude_g, omega=omega, half_cycles=2),
@@ -91,7 +78,7 @@ def _frames(sources: Sequence[Source], quick: bool) -> Iterator[Job]:
         for source in sources:
             # where in a step an impact falls costs per mille
             for phase, options in enumerate(_steps(source, case, 2 if quick else 4)):
-                values = columns, load, amplitude_g, omega, extreme, phase
+                values = columns, load, amplitude_g, omega, phase
                 labels = dict(zip(LABELS["frame"], values, strict=True))
                 yield _job("frame", labels, case, source, **options)
 
@@ -147,16 +134,6 @@ def _floors(sources: Sequence[Source]) -> Iterator[Job]:
             yield _job("floor", labels, case, source, settings={"floor": floor})
 
 
-def _blocks(sources: Sequence[Source], quick: bool) -> Iterator[Job]:
-    """Yield a block that rocks on a floor which engines move as documented."""
-    for (amplitude_g, omega), half_cycles in product(PULSES[: 1 if quick else None], (1, 2)):
-        pulse = SinePulse.in_g(amplitude_g, omega=omega, half_cycles=half_cycles)
-        labels = {"amplitude_g": amplitude_g, "omega": omega, "half_cycles": half_cycles}
-        for source in sources:
-            if source.engine and source.used.frame == "world":
-                yield _job("block", labels, Question(system=BLOCK, motion=pulse), source)
-
-
 @cache  # one for all sources
 def exact_of(case: Question) -> Response:
     """Return the exact response."""
@@ -173,28 +150,19 @@ def measure(job: Job) -> Row:
     row = {**summary(response), "reason": response.reason.name if response.reason else ""}
     seen = {name: _seen(response, name) for name in SEEN[scene]}
     if scene == "frame":
-        right, error = response.outcome is exact.outcome, _off(response, exact)
+        both = response.outcome is Outcome.ROCKED is exact.outcome
+        error = response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
+        right = response.outcome is exact.outcome
         return {**row, "exact": exact.peak_ratio, "right": right, "error": error, **seen}
     if scene == "slide":
         slips = {"slips": len(response.slips), "exact_slips": len(exact.slips)}
         return {**row, **slips, "slip_error_m": _slip_error(response, exact), **seen}
-    if scene == "floor":
-        travel = float(case.motion.displacement(case.motion.duration))
-        return {**row, "carried": 1.0 + _seen(response, "place_m") / travel, **seen}
-    failed = response.outcome is Outcome.FAILED  # what has failed once is not built again
-    own = response if failed else exact_on_its_floor(job.asked, BLOCK, case.motion)
-    peaks = {"exact": exact.peak_ratio, "own_exact": own.peak_ratio}
-    errors = {"error": _off(response, exact), "own_error": _off(response, own)}
-    return {**row, **peaks, **errors, **seen}
+    travel = float(case.motion.displacement(case.motion.duration))
+    return {**row, "carried": 1.0 + _seen(response, "place_m") / travel, **seen}
 
 
 def _seen(response: Response, name: str) -> float:
     return float(response.observables.get(name, math.nan))
-
-
-def _off(response: Response, exact: Response) -> float:
-    both = response.outcome is Outcome.ROCKED is exact.outcome
-    return response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
 
 
 def _slip_error(response: Response, exact: Response) -> float:
@@ -211,27 +179,6 @@ def _slip_error(response: Response, exact: Response) -> float:
     return max(abs(one - other) for one, other in zip(longest, exact.slips, strict=True))
 
 
-def exact_on_its_floor(source: Source, block: RigidBlock, motion: Motion) -> Response:
-    """Return the exact response to the motion that an engine's floor made under a block.
-
-    It is that to the second differences of the floor's places, joined by straight lines; a floor
-    that says nowhere where it is, is where it should be.
-    """
-    scene = Scene(system=block, motion=motion, preset=source.preset, compiled=False)
-    use = source.declared.use(scene)
-    world, stepping = build(use), use.preset.stepping
-    try:
-        if not hasattr(world, "base_x_m"):
-            return simulate(block, motion)
-        monitor = Monitor(use.scene, use.dt_s, stepping, world.moment, use.resolution)
-        walk, places = Stepper(monitor, world, stepping), [0.0, 0.0]
-        while walk.go(1):
-            places.append(float(world.base_x_m))
-    finally:
-        world.close()
-    return simulate(block, Record(samples=np.diff(places, 2) / use.dt_s**2, dt=use.dt_s))
-
-
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows of each scene, and a line for each source that is built for it."""
     parts = {}
@@ -244,11 +191,9 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     of_floors = ["engine", "floor", "carried", "carried_after_rest", LAG]
     return {
         **parts,
-        "frame-summary": _lines(frame[~frame["extreme"]], _of_frames),
-        "frame-extremes": _lines(frame[frame["extreme"]], _of_extremes, "columns", "load"),
+        "frame-summary": _lines(frame, _of_frames),
         "slide-summary": _lines(slide, _of_slides),
         "floor-summary": floors.reindex(columns=of_floors),
-        "block-summary": _lines(parts["block"], _of_blocks),
     }
 
 
@@ -259,33 +204,22 @@ def built(rows: pd.DataFrame) -> pd.DataFrame:
 
 def _lines(rows: pd.DataFrame, line: Callable[[pd.DataFrame], Row], *labels: str) -> pd.DataFrame:
     """Return a line for each source, or for each of its rows that have some labels alike."""
-    order, keys = [*rows.sort_index()["source"].unique()], ["source", *labels]
-    found: list[Row] = []
-    for key, group in rows.groupby(keys, sort=False):
-        found.append({**dict(zip(keys, key, strict=True)), **line(group)})
-    found.sort(key=lambda each: order.index(each["source"]))
-    return pd.DataFrame(found)
-
-
-def _errors(rows: pd.DataFrame) -> Row:
-    size = rows["error"].abs()
-    return {"median_error": size.median(), "largest_error": size.max()}
+    keys = ["source", *labels]
+    groups = rows.groupby(keys, sort=False)
+    return pd.DataFrame(
+        [{**dict(zip(keys, key, strict=True)), **line(group)} for key, group in groups]
+    )
 
 
 def _of_frames(rows: pd.DataFrame) -> Row:
+    size = rows["error"].abs()
     return {
         **{"frames": len(rows), "wrong": int((~rows["right"]).sum())},
-        **_errors(rows),
-        "beyond_2_percent": int((rows["error"].abs() > 0.02).sum()),
+        **{"median_error": size.median(), "largest_error": size.max()},
+        "beyond_2_percent": int((size > 0.02).sum()),
         **{name: rows[name].max() for name in SEEN["frame"]},
         "ms_a_frame": 1e3 * rows["wall_s"].mean(),
     }
-
-
-def _of_extremes(rows: pd.DataFrame) -> Row:
-    kinds = pd.Series(kinds_of(rows["outcome"], outcomes_of(rows["exact"])))
-    line = {"frames": len(rows), **counted(kinds), **_errors(rows)}
-    return {**line, "parting": rows["parting"].max()}
 
 
 def _of_slides(rows: pd.DataFrame) -> Row:
@@ -309,11 +243,6 @@ def _of_floors(rows: pd.DataFrame) -> Row:
         "carried_after_rest": rows.loc[rested, "carried"].max(),
         LAG: rows[LAG].max(),
     }
-
-
-def _of_blocks(rows: pd.DataFrame) -> Row:
-    medians = {f"median_{name}": rows[name].abs().median() for name in ("error", "own_error")}
-    return {"blocks": len(rows), **medians, LAG: rows[LAG].max()}
 
 
 def finding(tables: Tables) -> str:
@@ -348,8 +277,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         "Rocking frames": tables["frame-summary"],
         "Sliding blocks": tables["slide-summary"],
         "How much of a floor's way it carries a block": tables["floor-summary"],
-        "Blocks on a moving floor, beside the exact peak on the floor as it should move, and as it "
-        "moved": tables["block-summary"],
     }
 
 
@@ -382,11 +309,10 @@ STUDY = Study(
     help="""A frame, a slide, a moving floor, beside their exact solutions.
 
 The frame is a beam on two or three free columns, which turn as a block of another size and
-restitution does, and once on five, or much lighter or heavier than they are; the slide is friction
-alone: two slips under a pulse, a launch, and a hold below the onset; the floor is moved in each way
-that an engine has, and should carry a block along; a block that rocks on it is compared with the
-exact solution on the floor as it should move, and as it moved. Steps that land on impacts are asked
-about frames alone. What an engine is not built for is a row that says so. Twelve minutes.""",
+restitution does; the slide is friction alone: two slips under a pulse, a launch, and a hold below
+the onset; the floor is moved in each way that an engine has, and should carry a block along. Steps
+that land on impacts are asked about frames alone. What an engine is not built for is a row that
+says so. Ten minutes.""",
     sources=core_sources("naive", "fixed", "landing"),
     quick="One frame, one slide, and two places of the steps.",
     jobs=jobs,

@@ -101,23 +101,18 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
         swept = [job for number, job in enumerate(swept) if number // len(uses) % 11 == 0]
     varied = [use for use in uses if preset_of(use) != AT_REST]
     along = [job for job in precision.jobs(varied, quick) if job.labels["table"] == precision.ALONG]
+    known = FURTHER.values()
     tables = {
         SWEEP: swept,
         STEPS: along,
         EXTREMES: stability.matrix_jobs(uses, quick),
-        SCENES: [job for job in scenes.jobs(uses, quick) if is_usual(job.labels)],
+        SCENES: [job for job in scenes.jobs(uses, quick) if job.labels["scene"] in known],
     }
     return [
         replace(job, labels={"part": name, **job.labels})
         for name, of_table in tables.items()
         for job in of_table
     ]
-
-
-def is_usual(labels: Mapping[str, Any]) -> bool:
-    """Say whether a scene is a slide, or a usual frame in an engine's own steps."""
-    usual = not labels.get("extreme")
-    return usual and labels["scene"] in FURTHER.values()
 
 
 def measure(job: Job) -> Row:
