@@ -27,7 +27,7 @@ from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
 from studies.measures.differences import WELL_CONDITIONED, with_reference
-from studies.measures.energy import SAMPLES, energy_drift, growth
+from studies.measures.energy import SAMPLES, growth
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
 from studies.sources.registry import resolve
 
@@ -150,7 +150,6 @@ def measure(job: Job) -> Row:
         "newton_e": math.nan if framed else newton_e(ratio, system.alpha),
         "slip_widths": response.slip_m / system.width,
         "sink_widths": response.sink_m / system.width,
-        "energy_drift": energy_drift(system, motion, response),
         "energy_growth": growth(system, motion, response),
     }
 
@@ -195,7 +194,6 @@ def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
         newton_e=("newton_e", "median"),
         slip_widths=("slip_widths", "max"),
         sink_widths=("sink_widths", "max"),
-        energy_drift=("energy_drift", "median"),
         energy_growth=("energy_growth", "max"),
         step_s=("step_s", "median"),
         message=("message", "max"),

@@ -1,4 +1,4 @@
-"""Blocks as outlines: one with the names of its parts, a scene, the picture of the front page."""
+"""Blocks as outlines: a scene, and the histories of the front page."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
+from matplotlib.patches import Polygon, Rectangle
 
 from analytic.block import RigidBlock
 from analytic.motion import FloatArray
@@ -64,46 +64,6 @@ def _set_the_stage(axes: Axes, ground: float) -> None:
     axes.set_axis_off()
     left, right = axes.get_xlim()
     axes.add_patch(Rectangle((left, -ground), right - left, ground, color=GROUND, linewidth=0))
-
-
-def draw_block() -> Figure:
-    """Draw a block that rocks to the right, with the names of its parts."""
-    block, theta = RigidBlock(width=1.0, height=2.2), 0.22
-    drawing = Figure(figsize=(4.4, 4.6), layout="constrained")
-    axes = drawing.subplots()
-    axes.set(xlim=(-1.2, 1.75), ylim=(-0.5, 2.6))
-    _set_the_stage(axes, 0.16)
-    foot, pivot, top, far = corners = outlines(block, theta)[0]
-    axes.add_patch(Polygon(outlines(block, 0.0)[0], **DASHED))
-    axes.add_patch(Polygon(corners, **WHOLE))
-    centre = 0.5 * (pivot + far)
-    letters: dict[str, Any] = {"fontsize": 15, "va": "center"}
-    for start, end, name in ((pivot, foot, "B"), (foot, far, "H")):
-        middle = 0.5 * (start + end)
-        outward = (middle - centre) / np.linalg.norm(middle - centre)
-        axes.add_patch(_arrow(start + 0.12 * outward, end + 0.12 * outward, "<|-|>", SOFT))
-        x, y = middle + 0.3 * outward
-        axes.text(x, y, name, ha="center", **letters)
-    axes.plot(*np.array([pivot, centre]).T, color=INK, linewidth=1.4)
-    axes.plot(*centre, "o", color=INK, markersize=5)
-    x, y = 0.62 * centre + 0.38 * pivot
-    axes.text(x - 0.15, y, "R", **letters)
-    along = math.degrees(math.atan2(*(top - pivot)[::-1]))
-    alpha, turned = math.degrees(block.alpha), math.degrees(theta)
-    arcs = ((1.3, along, along + alpha, 0.78, "α"), (2.3, 180.0 - turned, 180.0, 1.3, "θ"))
-    for size, first, last, distance, name in arcs:
-        axes.add_patch(Arc(tuple(pivot), size, size, theta1=first, theta2=last, color=INK))
-        angle = math.radians(0.5 * (first + last))
-        x, y = pivot + distance * np.array([math.cos(angle), math.sin(angle)])
-        axes.text(x, y, name, ha="center", **letters)
-    axes.add_patch(_arrow((0.35, -0.36), (-0.55, -0.36), "-|>", INK, linewidth=2.0))
-    axes.text(0.45, -0.36, "ü$_g$", **letters)
-    return drawing
-
-
-def _arrow(start: Any, end: Any, style: str, colour: str, linewidth: float = 1.0) -> Any:
-    return FancyArrowPatch(tuple(start), tuple(end), arrowstyle=style, mutation_scale=12,
-                           color=colour, linewidth=linewidth, shrinkA=0, shrinkB=0)  # fmt: skip
 
 
 def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> Figure:

@@ -87,9 +87,3 @@ def method_title(method: str) -> str:
         return method
     preset, comma, dial = varied.partition(", ")
     return f"{ENGINES[engine].title}, {look_of(preset).short}{comma}{dial}"
-
-
-def costs_of(scenes: pd.DataFrame) -> pd.Series[float]:
-    """Return the run times over those of the scene as it is, timed in turn where a table says."""
-    first = scenes.groupby("engine")["wall_s"].transform("first")
-    return scenes["wall_s"] / scenes.get("plain_s", first)

@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.block import Rocker
 from analytic.motion import FloatArray, Motion
-from analytic.response import History, Outcome, Response
+from analytic.response import History, Response
 
 SAMPLES = 400
 """Samples of a history from which energies are read."""
@@ -22,12 +22,10 @@ def energy(block: Rocker, history: History) -> FloatArray:
     return kinetic + 2.0 * np.sin(block.alpha - 0.5 * y) * np.sin(0.5 * y)
 
 
-def flights(
-    block: Rocker, motion: Motion, response: Response, near: float = 0.0
-) -> list[FloatArray]:
+def flights(block: Rocker, motion: Motion, response: Response) -> list[FloatArray]:
     """Return the energies of the samples between two impacts, after the ground motion.
 
-    Left out are the samples next to an impact, those in the part `near` of a flight at either end,
+    Left out are the samples next to an impact, those in the part NEAR of a flight at either end,
     and what follows the last impact.
     """
     history = response.history
@@ -38,7 +36,7 @@ def flights(
     margin = 2.0 * float(history.time[1] - history.time[0])
     result = []
     for start, end in itertools.pairwise(edges):
-        apart = max(margin, near * (end - start))
+        apart = max(margin, NEAR * (end - start))
         inside = (history.time > start + apart) & (history.time < end - apart)
         if np.count_nonzero(inside) > 1:
             result.append(energies[inside])
@@ -52,21 +50,9 @@ def growth(block: Rocker, motion: Motion, response: Response) -> float:
     of a rigid block can only lose energy. 0 where it never rises; nan where no flight to an impact
     has two samples that are further from its ends than a part NEAR of it.
     """
-    parts = flights(block, motion, response, NEAR)
+    parts = flights(block, motion, response)
     if not parts:
         return math.nan
     energies = np.concatenate(parts)
     rise = float((energies - np.minimum.accumulate(energies)).max())
     return rise / float(energies.max()) if rise > 0.0 else 0.0
-
-
-def energy_drift(block: Rocker, motion: Motion, response: Response) -> float:
-    """Return how much the energy of free rocking varies between two impacts, at most.
-
-    Its range over a flight, without the samples next to an impact, over its value at the flight's
-    end; nan unless the block rocked so.
-    """
-    if response.outcome is not Outcome.ROCKED:
-        return math.nan
-    drifts = (float(np.ptp(e) / e[-1]) for e in flights(block, motion, response))
-    return max(drifts, default=math.nan)

@@ -51,7 +51,7 @@ def command(*, root: Path = Path()) -> int:
     root
         The project's folder.
     """
-    from studies.drawing.block import draw_block, draw_hero
+    from studies.drawing.block import draw_hero
     from studies.kit.pictures import save_all
 
     published, folder = root / PUBLISHED, root / PUBLISHED / "hero"
@@ -64,8 +64,7 @@ def command(*, root: Path = Path()) -> int:
     write_table(folder / "hero.csv", measure_hero())
     write_record(folder, {"study": "readme", **versions({})})
     histories = read_table(folder / "hero.csv")
-    drawn = {"block": draw_block(), "hero": draw_hero(BLOCK, histories, summary(histories))}
-    save_all(drawn, folder)
+    save_all({"hero": draw_hero(BLOCK, histories, summary(histories))}, folder)
     for path, text in pages(root).items():
         write_text(path, text)
         print(path)

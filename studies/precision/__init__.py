@@ -6,42 +6,46 @@ import math
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, fields, replace
+from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pandas as pd
 
 from analytic import RigidBlock, simulate
 from analytic.response import Outcome, Response
 from engines import ENGINES
-from studies.cases.paper import Case, chosen_cases, free_rocking_window
+from engines.declaration import Engine
+from studies.cases.paper import HISTORIES, Case, chosen_cases, free_rocking_window
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.options import Running
 from studies.kit.say import duration, part
 from studies.kit.study import Study, Tables
-from studies.measures.costs import EXACT, STEPPED, best_of, costs_of, exact_cost, method_title
+from studies.measures.costs import EXACT, best_of, best_of_each, exact_cost, method_title
 from studies.measures.finer import cheapest_below, joint
 from studies.measures.presets import engine_of
 from studies.measures.published import TARGETS
 from studies.precision.methods import PLAIN, known_methods, methods_of
-from studies.precision.scene import CASE, has, omissions, put_back, share
 from studies.sources.registry import core_sources
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ALONG, SHARES, SCENES = "precision", "shares", "scenes"
+ALONG, SCENES = "precision", "scenes"
 """The tables whose rows are measured."""
 TYPICAL, NEAR, ALL = "typical", "near overturning", "all"
 """The sets of cases, and both together."""
 FINE_TARGETS = (*TARGETS[1:], 1e-6)
 """Errors that are asked of every method."""
+CASE = HISTORIES[5][1]
+"""Figure 5-b, of which scenes are timed: one impact before the peak, κ about 5."""
 
 
 def jobs(sources: Iterable[str], quick: bool) -> list[Job]:
-    """Return a job for each method, setting and case; then those of steps and of scenes."""
+    """Return a job for each method, setting and case; then those of scenes."""
     names = tuple(sources)
-    # spent at most on timing a case with one setting, and on timing a step or a scene
+    # spent at most on timing a case with one setting, and on timing a scene
     brief_s, long_s = (0.02, 0.15) if quick else (0.5, 5.0)
     found, sets = [], chosen_cases(quick)
     for name, method in methods_of(names).items():
@@ -57,21 +61,17 @@ def jobs(sources: Iterable[str], quick: bool) -> list[Job]:
                 options = method.options_at(value)
                 found.append(Job(labels=labels, case=asked, source=method.source, options=options))
     engines = dict.fromkeys(engine_of(name) for name in names if engine_of(name) in ENGINES)
-    alone = [{"table": SHARES, "engine": engine} for engine in engines]
-    alone += [
-        {"table": SCENES, "engine": engine, "scene": left_out}
-        for engine, (left_out, options) in product(engines, omissions().items())
-        if has(ENGINES[engine], **options)
-    ]
     asked = Question(system=CASE.block, motion=CASE.motion)
-    return found + [
-        Job(labels={**it, "budget_s": long_s}, case=asked, source=it["engine"]) for it in alone
-    ]
+    for engine, (left_out, options) in product(engines, omissions().items()):
+        if has(ENGINES[engine], **options):
+            labels = {"table": SCENES, "engine": engine, "scene": left_out, "budget_s": long_s}
+            found.append(Job(labels=labels, case=asked, source=engine))
+    return found
 
 
 def measure(job: Job) -> Row:
     """Return what a job's table has of it."""
-    return {ALONG: along, SHARES: share, SCENES: put_back}[job.labels["table"]](job)
+    return {ALONG: along, SCENES: put_back}[job.labels["table"]](job)
 
 
 def along(job: Job) -> Row:
@@ -105,6 +105,50 @@ def along(job: Job) -> Row:
     }
 
 
+def omissions() -> dict[str, dict[str, Any]]:
+    """Return the options that put back what a scene leaves out, by the name of that; none first."""
+    window, grid = free_rocking_window(CASE.block, CASE.motion), np.linspace(0.0, 1.0, 1001)
+    return {
+        "as it is": {},
+        "free body instead of planar": {"settings": {"planar": False}},
+        "full box instead of corners": {"settings": {"geometry": "box"}},
+        "base moving in the world": {"frame": "world"},
+        "8/p of free rocking after the pulse": {"duration": window},
+        "the same, recorded as a history": {"duration": window, "times": window * grid},
+        "steps all equal": {"preset": "fixed"},
+    }
+
+
+def has(
+    engine: Engine, preset: str = "", settings: Row | None = None, frame: str = "base", **_: Any
+) -> bool:
+    """Return whether an engine has what is put back into its scene."""
+    known = not preset or preset in [use.name for use in engine.presets]
+    return (
+        known and frame in engine.frames and engine.preset(preset or None).takes(**settings or {})
+    )
+
+
+def put_back(job: Job) -> Row:
+    """Time a scene with what it leaves out, in turn with the scene as it is."""
+    options = omissions()[str(job.labels["scene"])]
+    observed = {name: options.pop(name) for name in ("duration", "times") if name in options}
+    preset = options.pop("preset", "")
+    source, case = f"{job.source}:{preset}" if preset else job.source, replace(job.case, **observed)
+    posed = replace(job, case=case, source=source, options=options)
+    asked = [partial(ask, posed), partial(ask, job)]
+    (found, runs), (plain, _) = best_of_each(asked, job.labels["budget_s"])
+    exact = simulate(CASE.block, CASE.motion).peak_ratio
+    return {
+        **summary(found),
+        "runs": runs,
+        "step_s": found.wall_s / max(found.steps, 1),
+        "plain_s": plain.wall_s,
+        "setup_s": found.setup_s,
+        "error": found.peak_ratio / exact - 1.0,
+    }
+
+
 COLUMNS = {
     ALONG: [
         *(
@@ -119,7 +163,6 @@ COLUMNS = {
         ),
         *("impacts", "steps", "wall_s", "message", "setup_s", "runs", "error"),
     ],
-    SHARES: ["engine", "step_s", "engine_s"],
     SCENES: [
         *("engine", "scene", "outcome", "wall_s", "runs", "steps"),
         *("step_s", "plain_s", "setup_s", "error", "message"),
@@ -218,8 +261,8 @@ def finding(tables: Tables) -> str:
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
-    """Return what each error costs, where the time of a step goes, and what a scene costs."""
-    table, scenes, shares = (tables[name] for name in ("work-precision", SCENES, SHARES))
+    """Return what each error costs, and what a scene costs."""
+    table, scenes = tables["work-precision"], tables[SCENES]
     typical = table[table["set"] == TYPICAL]
     costs = over_targets(typical, "wall_s")
     costs[costs.columns[1:]] /= exact_cost(typical)
@@ -232,11 +275,10 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
             typical, "value"
         ),
         f"Its run time over that of the {EXACT} at its tightest": costs,
-        f"Time of a step, and over the engine's own part of it. {STEPPED}": shares.assign(
-            over_engine=shares["step_s"] / shares["engine_s"]
-        ),
         "What a scene leaves out, put back one at a time; cost: run time over the scene as it is": (
-            scenes.assign(cost=costs_of(scenes))[scenes["steps"] > 0].drop(columns="message")
+            scenes.assign(cost=scenes["wall_s"] / scenes["plain_s"])[scenes["steps"] > 0].drop(
+                columns="message"
+            )
         ),
     }
     return {title: table for title, table in found.items() if len(table)}
@@ -257,10 +299,9 @@ STUDY = Study(
 The setting is a tolerance, a step or the iterations of a solver; 12 cases have typical peaks and 12
 are near overturning. A time is the best of five runs or more, until the shortest two agree, or of
 fewer where these take longer than half a second: how many is a column. Building and compiling are
-apart. Besides, where the time of a step goes, and what each thing costs that a scene leaves out: a
-free body, a full box, a moving base, a recorded history, ... A compiled loop over mj_step takes
-MuJoCo's steps; Python takes all others. With more than one of --jobs they slow each other down. It
-takes about 10 minutes.""",
+apart. Besides, what each thing costs that a scene leaves out: a free body, a full box, a moving
+base, a recorded history, ... A compiled loop over mj_step takes MuJoCo's steps; Python takes all
+others. With more than one of --jobs they slow each other down. It takes about 10 minutes.""",
     sources=(*dict.fromkeys(method.source for method in PLAIN.values()), *core_sources()),
     quick="Fewer cases and settings, shorter timing: some one and a half minutes.",
     jobs=jobs,

@@ -7,16 +7,14 @@ from functools import cache
 import pandas as pd
 import pytest
 from declared import NUISANCE, equal_to
-from declared import run as drive
 
 from analytic.response import Response
-from engines import ENGINES, Scene, core_engines, installed_engines
+from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Stepping
 from studies import precision
 from studies.kit.run import run
 from studies.measures.costs import LEAST_RUNS, LEAST_S, best_of, cost_text, enough
 from studies.precision import SCENES, STUDY, choices, jobs, measure
-from studies.precision.scene import CASE, OWN_STEP, clock
 
 MOST_S = 4.0 * LEAST_S
 ONE_CONTACT = {"drake": 0.6}
@@ -91,7 +89,7 @@ def test_a_wrong_outcome_is_an_infinite_error_and_each_table_has_its_rows():
     free = {"scene": "free body instead of planar"}
     asked = [*few("exact", "housner", set="near overturning", figure=8)]
     assert not few("pymunk", **free)  # it has none
-    asked += [*few("mujoco", table="shares"), *few("mujoco", **free)]
+    asked += few("mujoco", **free)
     rows = run(asked, measure)
     tables = STUDY.tabulate(pd.DataFrame(rows))
     found = tables["work-precision"].set_index("method")["max_error"]
@@ -100,26 +98,7 @@ def test_a_wrong_outcome_is_an_infinite_error_and_each_table_has_its_rows():
     assert tables["precision"]["figure"].dtype == int
     (free,) = tables[SCENES].to_dict("records")
     assert free["error"] == pytest.approx(0.0, abs=1e-4)
-    (share,) = tables["shares"].to_dict("records")
-    assert 0.0 < share["engine_s"] < 1.0 and share["step_s"] > 0.0
     assert {row["table"] for row in STUDY.needed(rows)} == {"precision"}
-
-
-TIMED = [name for name in core_engines() if name in OWN_STEP]
-
-
-@pytest.mark.parametrize("engine", TIMED)
-def test_a_clock_sees_every_step_and_goes_away(engine):
-    scene = Scene(system=CASE.block, motion=CASE.motion, compiled=False)
-    plain = drive(engine, scene)
-    with clock(engine) as spent:
-        watched = drive(engine, scene)
-    assert watched.peak_ratio == plain.peak_ratio
-    assert len(spent) >= watched.steps
-    assert 0.0 < sum(spent) < watched.wall_s + watched.setup_s
-    before = len(spent)
-    drive(engine, scene)
-    assert len(spent) == before
 
 
 @pytest.mark.slow
