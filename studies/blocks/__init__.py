@@ -44,7 +44,7 @@ CASE, PAIR = ["name", "record", "scale"], ["name", "record"]
 FOUND = [*Strength._fields]
 """Columns of a block under a record, at whatever factor."""
 COLUMNS = [
-    *("name", "width_m", "height_m", "friction", "tilt", "record", "record_digest", "scale"),
+    *("name", "width_m", "height_m", "friction", "record", "record_digest", "scale"),
     *("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
     *("friction_needed", *FOUND),
 ]
@@ -78,13 +78,12 @@ def jobs(
             continue
         window = free_rocking_window(block, motion)
         refuse_endless(block, window)
-        start = (cabinet.tilt or 0.0) * cabinet.block.alpha, 0.0
         moves = {"record": name, "record_digest": digests[name], "baseline": baseline}
         rubs = engine and cabinet.friction is not None
         found.append(
             Job(
                 labels={**asdict(cabinet), **moves, "scale": scale},
-                case=Question(system=block, motion=motion, start=start, duration=window),
+                case=Question(system=block, motion=motion, duration=window),
                 source=source,
                 options={"friction": cabinet.friction} if rubs else {},
             )
@@ -99,7 +98,7 @@ def measure(job: Job) -> Row:
         try:
             if job.lost is not None:
                 raise RuntimeError(job.lost.message)
-            found = strength(block, motion, job.case.start)
+            found = strength(block, motion)
         except RuntimeError as error:
             return unanswered(str(error))
         return {**unanswered(""), "outcome": "found", **found._asdict()}
@@ -117,7 +116,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     that the search did not see. What slides has no margin, nor an answer of a source that cannot
     let it slide.
     """
-    rows = rows.reindex(columns=COLUMNS).astype({"friction": float, "tilt": float})
+    rows = rows.reindex(columns=COLUMNS).astype({"friction": float})
     answers, margins = rows[rows["scale"] > 0.0], rows[rows["scale"] == ALL_SCALES]
     exact = answers[answers["source"] == "exact"].rename(columns={"outcome": "exact_outcome"})
     exact = exact.set_index(CASE)[["exact_outcome", "friction_needed"]]
@@ -225,7 +224,7 @@ def command(
     ----------
     cabinets
         A table with a line of names: name, width and height [m] of each block, and perhaps its
-        friction, and its tilt, the rotation that it starts from in units of α.
+        friction.
     record
         Recorded accelerograms, files as `rocking compare --record` takes them.
     scale

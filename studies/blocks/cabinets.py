@@ -1,4 +1,4 @@
-"""A list of blocks as a table: name, width and height, and perhaps friction and tilt."""
+"""A list of blocks as a table: name, width and height, and perhaps friction."""
 
 import csv
 import math
@@ -13,20 +13,19 @@ from studies.cases.refusal import BadInputError
 from studies.kit.scene_options import MOST_M
 
 NEEDED = ("name", "width", "height")
-COLUMNS = (*NEEDED, "friction", "tilt")
+COLUMNS = (*NEEDED, "friction")
 SHOWN = 10
 """Bad lines that a refusal names; it is one line."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cabinet:
-    """A block of a list, in metres; friction of its base and a tilt over α where they are given."""
+    """A block of a list, in metres, with the friction of its base where that is given."""
 
     name: str
     width_m: float
     height_m: float
     friction: float | None = None
-    tilt: float | None = None
 
     @property
     def block(self) -> RigidBlock:
@@ -35,9 +34,9 @@ class Cabinet:
 
     @property
     def system(self) -> RigidBlock | SlidingBlock:
-        """The block, or the one that slides: it stands upright, and its friction is below B/H."""
+        """The block, or the one that slides: its friction is below B/H."""
         friction = self.friction
-        if self.tilt or friction is None or not friction < self.width_m / self.height_m:
+        if friction is None or friction >= self.width_m / self.height_m:
             return self.block
         return SlidingBlock(width=self.width_m, height=self.height_m, friction=friction)
 
@@ -73,7 +72,7 @@ def _rows(lines: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
     rows = ([word.strip() for word in row] for row in reader if any(row))
     heads = [name.lower() for name in next(rows, [])]
     if not {*NEEDED} <= {*heads} <= {*COLUMNS} or len(heads) > len({*heads}):
-        words = "name, width and height, in metres, and may be friction and tilt, each once"
+        words = "name, width and height, in metres, and may be friction, each once"
         raise ValueError(f"it has the columns {', '.join(heads)!r}; they must be {words}")
     for row in rows:
         many = len(row) != len(heads)
@@ -87,11 +86,9 @@ def _cabinet(cells: Mapping[str, str]) -> Cabinet:
     if not (0 < len(name := cells["name"]) <= 300 and name.isprintable()):
         raise _bad("name", name, "1 to 300 letters, without ends of lines, tabs and the like")
     width, height = (_number(cells, name, 1e-3, MOST_M, " m") for name in NEEDED[1:])
-    lying = math.nextafter(0.5 * math.pi / math.atan2(width, height), 0.0)
     # no base is smoother
     friction = _number(cells, "friction", 1e-3, 1e6) if cells.get("friction") else None
-    tilt = _number(cells, "tilt", -lying, lying, " α") if cells.get("tilt") else None
-    return Cabinet(name=name, width_m=width, height_m=height, friction=friction, tilt=tilt)
+    return Cabinet(name=name, width_m=width, height_m=height, friction=friction)
 
 
 def _number(

@@ -18,7 +18,7 @@ from analytic.start import strongest
 from studies.kit.store import usable_cores
 
 APART = 0.01
-"""Relative distance of two factors; of a block that starts off rest, up to the onset, over it."""
+"""Relative distance of two factors."""
 MOST_ONSETS = 100.0
 """Over the onset: the largest factor tried."""
 WIDTH = 1e-6
@@ -38,9 +38,9 @@ class Strength(NamedTuple):
     margin_friction: float
 
 
-def strength(block: RigidBlock, motion: Record, start: tuple[float, float]) -> Strength:
+def strength(block: RigidBlock, motion: Record) -> Strength:
     """Find by which factors on a motion the exact block overturns; RuntimeError if one fails."""
-    solve = scaled(block, motion, start=start)
+    solve = scaled(block, motion)
 
     def falls(factor: float) -> bool:
         outcome = solve(factor, 1.0)[1]
@@ -48,12 +48,9 @@ def strength(block: RigidBlock, motion: Record, start: tuple[float, float]) -> S
             raise RuntimeError(f"no margin: the solution at the factor {factor:g} failed")
         return outcome is Outcome.OVERTURNED
 
-    onset, at_rest = math.tan(block.alpha) * block.gravity / strongest(motion), start == (0.0, 0.0)
-    lifts = onset if at_rest else 0.0
+    lifts = math.tan(block.alpha) * block.gravity / strongest(motion)
     count = round(math.log(MOST_ONSETS) / math.log1p(APART))
-    factors = [onset * (1.0 + APART) ** n for n in range(1, count + 1)]
-    if not at_rest:
-        factors = [onset * APART * n for n in range(round(1.0 / APART) + 1)] + factors
+    factors = [lifts * (1.0 + APART) ** n for n in range(1, count + 1)]
     found, high = list[bool](), math.inf
     with ThreadPoolExecutor(usable_cores()) as pool:
         while not any(found) and len(found) < len(factors):
@@ -65,5 +62,5 @@ def strength(block: RigidBlock, motion: Record, start: tuple[float, float]) -> S
             middle = 0.5 * (low + high)
             low, high = (low, middle) if falls(middle) else (middle, high)
     strongest_tried = motion.scaled(high if any(found) else factors[-1])
-    needed = simulate(block, strongest_tried, start=start).friction_needed
+    needed = simulate(block, strongest_tried).friction_needed
     return Strength(lifts, high, needed)

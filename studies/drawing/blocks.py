@@ -61,9 +61,9 @@ def _draw_line(axes: Axes, line: dict[Any, Any], level: float, place: int) -> Li
     if words := line["no_margin"] or ("none found" if np.isinf(line["margin"]) else ""):
         axes.annotate(f"{words} ", (1.0, level), xycoords=("axes fraction", "data"), ha="right",
                       va="center", fontsize=7, color=colour)  # fmt: skip
-    elif line["margin"] > 0.0:
-        start = line["lifts"] or line["margin"]
-        axes.plot([start, line["margin"]], [level] * 2, markevery=[1], linewidth=1.2, **look)
+    else:
+        ends = [line["lifts"], line["margin"]]
+        axes.plot(ends, [level] * 2, markevery=[1], linewidth=1.2, **look)
     label = f"{_short(line['record'])}: lifts to overturns"
     return Line2D([], [], linewidth=1.2, label=label, **look)
 
