@@ -34,7 +34,7 @@ CHANGES = {
 """The one that is changed, and how, in words."""
 GRIDS = ("paper", "wide")
 WRONG = ["wrong", "false", "missed"]
-ERRORS = ["median_error", "rms_error", "max_error", "rms_difference", "max_difference"]
+ERRORS = ["median_error", "max_error"]
 
 
 def variant(changed: str) -> Model:
@@ -104,10 +104,8 @@ def errors_on(name: str, changed: str) -> pd.DataFrame:
     peak, outcome = peak_ratios(*posed_cases(cases), model=VARIANTS[changed])
     exact = cases["exact_peak"].to_numpy()
     both = np.isfinite(peak) & np.isfinite(exact) & (exact > 0.0) & (peak > 0.0)
-    mine, right = (np.where(both, value, np.nan) for value in (peak, exact))
     return cases.assign(
-        error=mine / right - 1.0,
-        difference=mine - right,
+        error=np.where(both, peak, np.nan) / np.where(both, exact, np.nan) - 1.0,
         false=np.isinf(peak) & ~np.isinf(exact),
         missed=~np.isinf(peak) & np.isinf(exact),
         wrong=outcome != cases["exact_outcome"].to_numpy(),
@@ -115,12 +113,9 @@ def errors_on(name: str, changed: str) -> pd.DataFrame:
 
 
 def line(errors: pd.DataFrame) -> Row:
-    """Return what some cases have in common; errors are relative, differences in theta_cr."""
-    error, apart = errors["error"].abs(), errors["difference"].abs()
-    wrong = {name: int(errors[name].sum()) for name in WRONG}
-    rms = [float(np.sqrt((values**2).mean())) for values in (error, apart)]
-    numbers = (float(error.median()), rms[0], float(error.max()), rms[1], float(apart.max()))
-    sizes = dict(zip(ERRORS, numbers, strict=True))
+    """Return what some cases have in common; errors are relative."""
+    error, wrong = errors["error"].abs(), {name: int(errors[name].sum()) for name in WRONG}
+    sizes = {"median_error": float(error.median()), "max_error": float(error.max())}
     return {"cases": len(errors), **wrong, "survivors": int(error.count()), **sizes}
 
 

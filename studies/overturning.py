@@ -213,7 +213,7 @@ def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def plane_tables(rows: pd.DataFrame) -> Tables:
-    """Return the rows, and a line for each engine and width, and for each engine and rest."""
+    """Return the rows, and a line for each engine and width."""
     known = with_verdicts(rows)
     written = known.drop(columns="error").astype({"impacts": int, "steps": int})
     known = known[(known["source"] != "exact") & (known["verdict"] != INVALID)]
@@ -231,16 +231,14 @@ def plane_tables(rows: pd.DataFrame) -> Tables:
     def sums(*names: str) -> dict[str, tuple[str, str]]:
         return {name: (name, "sum") for name in names}
 
-    by_width, by_rest = (known.groupby(["source", by], sort=False) for by in ("width_m", "rest_s"))
-    parts = by_width.agg(
+    parts = known.groupby(["source", "width_m"], sort=False).agg(
         cases=("close", "size"),
         **sums("close", "far", "false_overturnings", "missed_overturnings"),
         median_error=("size", "median"),
         p90_error=("size", lambda size: size.quantile(0.9)),
         **sums("wall_s", *KINDS),
     )
-    rests = by_rest.agg(cases=("close", "size"), **sums("close", *KINDS))
-    return {"defaults": written, "parts": parts.reset_index(), "rests": rests.reset_index()}
+    return {"defaults": written, "parts": parts.reset_index()}
 
 
 def finding(tables: Tables) -> str:
@@ -274,10 +272,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         if "differences" in tables:
             found["Parts of the map that a model gets wrong"] = tables["differences"]
     if "parts" in tables:
-        found |= {
-            "Pulses by the width of the block": tables["parts"],
-            "Pulses by the rest before them": tables["rests"],
-        }
+        found["Pulses by the width of the block"] = tables["parts"]
     return found
 
 

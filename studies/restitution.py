@@ -173,13 +173,13 @@ def deviations(rows: pd.DataFrame) -> pd.DataFrame:
     rows = rows.assign(off=off, slide=rows["slide_ratio"].abs())
     table = []
     for (engine, way), group in rows.groupby(["engine", "way"], sort=False):
-        by = group.groupby("varied")["off"].max().reindex(["", *USUAL])
+        usual = group.loc[group["varied"] == "", ["off", "slide"]].max()
         table.append(
             {
-                **{"engine": engine, "way": way, "off": by[""]},
-                **{f"off_{name}": by[name] for name in USUAL},
-                **{"off_over_all": by.max(), "broken": int((group["off"] == math.inf).sum())},
-                "slide": group.loc[group["varied"] == "", "slide"].max(),
+                **{"engine": engine, "way": way, "off": usual["off"]},
+                "off_over_all": group["off"].max(),
+                "broken": int((group["off"] == math.inf).sum()),
+                "slide": usual["slide"],
                 "literal": WAYS[str(engine)][str(way)].literal(SHOWN),
             }
         )
@@ -202,14 +202,11 @@ def finding(tables: Tables) -> str:
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
-    """Return the deviations of each way, what it sets, and what was varied."""
-    corners, off = tables["corners"], r"^(engine|way|off)"
-    others = [", ".join(f"{value:g}" for value in values[1:]) for values in VARIED.values()]
-    varied = {"varied": [*USUAL], "usual": [*USUAL.values()], "others": others}
+    """Return the deviations of each way, and what it sets."""
+    corners = tables["corners"]
     return {
-        "What was varied, one at a time, wherever in a step the impact falls": pd.DataFrame(varied),
         "Largest difference of the corner's speed, after over before, from the coefficient; its "
-        "speed along the base; strikes that broke": corners.filter(regex=f"{off}|broken|slide"),
+        "speed along the base; strikes that broke": corners.drop(columns="literal"),
         f"What is set for {SHOWN:g}; DT is the step [s]": corners[["engine", "way", "literal"]],
         "Without a coefficient": pd.DataFrame(list(WITHOUT.items()), columns=["engine", "instead"]),
     }

@@ -1,7 +1,4 @@
-"""One engine: what it predicts, at what price, where it fails, and what moved since a release.
-
-Before any case, the world of an engine of another package is checked, see `problem_of`.
-"""
+"""One engine: what it predicts, at what price, where it fails, and what moved since a release."""
 
 from __future__ import annotations
 
@@ -278,8 +275,7 @@ def scored(source: str) -> Engine:
 def problem_of(engine: str) -> str:
     """Say in a line what the world of one of an engine's presets does wrong, if any does.
 
-    A world lacks a method, turns the wrong way round, or declares another `Moment` than that at
-    which its velocities hold. What it raises is no matter of this: its cases will say so.
+    What it raises is no matter of this: its cases will say so.
     """
     for use in uses_of(engine):
         with suppress(BaseException):
@@ -364,13 +360,7 @@ def pulled(source: Source, along: list[float], up: list[float], side: float) -> 
 
 
 def result_of(tables: Tables, engine: Engine) -> dict[str, Any]:
-    """Return the result of tables, as JSON knows it: schema, engine and versions by package.
-
-    presets: for each its `MEASURES`, an error being None where no peak survives, and how many cases
-    and extremes these are of. peaks: for each preset and case that of a block which rocked, over
-    its critical rotation, or the outcome of another; a case is called by its `CASE` with slashes
-    between, or extreme/NAME.
-    """
+    """Return the result of tables, as JSON knows it; an error is None where no peak survives."""
     cases, extremes = tables[SWEEP], tables[EXTREMES]
     names = ["/".join(map(str, case)) for case in cases[CASE].itertuples(index=False)]
     rows = pd.concat(
@@ -418,11 +408,7 @@ def read(path: Path, engine: Engine) -> dict[str, Any]:
 
 
 def since(then: Mapping[str, Any], now: Mapping[str, Any]) -> str:
-    """Say what moved between two results, of the answers that are in both.
-
-    Below the sentence a table of other outcomes, and one of the peaks that moved by more than
-    NOISE, the most first, where there are any.
-    """
+    """Say what moved between two results, of the answers in both; below, which did."""
     answers = [pd.DataFrame(result["peaks"]).unstack().dropna() for result in (then, now)]
     both = pd.concat(answers, axis=1, join="inner", keys=["then", "now"])
     table = both.rename_axis(["preset", "case"]).reset_index()

@@ -183,7 +183,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         "Errors of the peak where both survive": quantiles(errors),
         f"The same where S < {WELL_CONDITIONED:g}: by how many per cent a peak moves\nfor one of "
         "the pulse, or of the velocity ratio of impacts": quantiles(errors[s < WELL_CONDITIONED]),
-        "Errors over S": quantiles(errors.assign(error=errors["error"] / s)),
         "The largest errors": worst(errors, 5),
         "Cases that were drawn": tables["drawn"],
     }

@@ -49,7 +49,7 @@ def draw_contact(lines: pd.DataFrame) -> Figure:
 
 def _one_engine(axes: Axes, records: list[dict[Any, Any]]) -> None:
     rows(axes, [_label(line) for line in records])
-    strip_beyond(axes, 2.5, "", along="x")  # of failed variants and wrong outcomes
+    strip_beyond(axes, 2.5, along="x")  # of failed variants and wrong outcomes
     for place, (text, line) in enumerate(zip(axes.get_yticklabels(), records, strict=True)):
         colour = look_of(str(line["preset"])).colour
         text.set(color=colour, fontweight="normal" if line["factor"] else "bold")

@@ -67,20 +67,16 @@ def rows(axes: Axes, names: Sequence[str], size: float = 9.0) -> None:
     axes.set_axisbelow(True)
 
 
-def strip_beyond(axes: Axes, start: float, words: str, *, along: str = "y") -> None:
-    """Shade what lies beyond a logarithmic scale, from a value on, and say what stands there.
+def strip_beyond(axes: Axes, start: float, words: str = "", *, along: str = "y") -> None:
+    """Shade what lies beyond a value of a logarithmic scale; say what stands there, beyond y.
 
     The axes must have the limits that they will keep; the strip ends at the larger one.
     """
     end = max(getattr(axes, f"get_{along}lim")())
-    middle = math.sqrt(start * end)
     span: Any = axes.axhspan if along == "y" else axes.axvspan
     span(start, end, color=STRIP, zorder=-2, linewidth=0.0)
-    x, y, ha, va = (0.995, middle, "right", "center")
-    if along == "x":
-        x, y, ha, va = (middle, 1.0, "center", "bottom")
-    axes.text(x, y, words, transform=getattr(axes, f"get_{along}axis_transform")(), ha=ha, va=va,
-              fontsize=8, color="#666666")  # fmt: skip
+    axes.text(0.995, math.sqrt(start * end), words, transform=axes.get_yaxis_transform(),
+              ha="right", va="center", fontsize=8, color="#666666")  # fmt: skip
 
 
 def dot(name: str, marker: str, color: ColorType = "#555555", **look: Any) -> Line2D:

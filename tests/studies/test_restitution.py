@@ -114,10 +114,10 @@ def test_a_line_holds_the_largest_deviations_and_counts_what_broke():
     )  # fmt: skip
     tables = restitution.tabulate(rows.assign(source="", outcome="struck", message=""))
     plain, other = tables["corners"].to_dict("records")
-    assert (plain["off"], plain["off_p_dt"], plain["off_over_all"]) == (0.5, 0.0, 0.5)
+    assert (plain["off"], plain["off_over_all"]) == (0.5, 0.5)
     assert (plain["slide"], plain["broken"]) == (0.2, 0)
     assert other["off"] == pytest.approx(0.05)
-    assert (other["off_p_dt"], other["off_aspect"], other["broken"]) == (math.inf, math.inf, 2)
+    assert (other["off_over_all"], other["broken"]) == (math.inf, 2)
     assert "pymunk keeps" in restitution.finding(tables)
 
 
