@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
     from analytic.motion import FloatArray, Motion
     from analytic.response import Response
     from engines.scene import System
 
-__all__ = ["plot", "respond", "side_by_side", "table"]
+__all__ = ["respond", "side_by_side"]
 
 
 def respond(
@@ -152,67 +151,3 @@ def side_by_side(
     except BadInputError as error:
         raise ValueError(str(error).removeprefix("--")) from None
     return pd.DataFrame(records(rows))
-
-
-def table(response: Response) -> pd.DataFrame:
-    """Return the history of a response that was asked for with `times`, as a table.
-
-    Returns
-    -------
-    DataFrame
-        time_s [s], theta_rad [rad] and velocity_rad_s [rad/s], a row for each time until the
-        response ends; ValueError if it has no history.
-
-    Examples
-    --------
-    >>> from analytic import RigidBlock, Still
-    >>> block = RigidBlock(width=0.5, height=1.5)
-    >>> seen = {"times": [0.0, 0.1], "duration": 0.1}
-    >>> response = respond("exact", block, Still(), start=(0.1, 0.0), **seen)
-    >>> table(response).round(3).to_dict("list")
-    {'time_s': [0.0, 0.1], 'theta_rad': [0.1, 0.09], 'velocity_rad_s': [0.0, -0.208]}
-    """
-    import pandas as pd
-
-    if (history := response.history) is None:
-        raise ValueError("the response has no history; ask for one with times=...")
-    columns = history.time, history.theta, history.velocity
-    names = ("time_s", "theta_rad", "velocity_rad_s")
-    return pd.DataFrame(dict(zip(names, columns, strict=True)))
-
-
-def plot(response: Response, axes: Axes | None = None) -> Axes:
-    """Draw the rotation of a response over time, with ticks at its impacts.
-
-    Parameters
-    ----------
-    response : Response
-        That was asked for with `times`; ValueError if it has no history.
-    axes : matplotlib.axes.Axes, optional
-        Where to draw; a figure of its own by default, which a notebook shows as a picture.
-
-    Examples
-    --------
-    >>> from analytic import RigidBlock, Still
-    >>> block = RigidBlock(width=0.5, height=1.5)
-    >>> seen = {"times": [0.0, 0.1], "duration": 0.1}
-    >>> response = respond("exact", block, Still(), start=(0.1, 0.0), **seen)
-    >>> plot(response).get_xlabel()
-    'time  t  [s]'
-    """
-    from matplotlib.figure import Figure
-
-    from studies.drawing.figures import ShownAxes
-
-    history = table(response)
-    if axes is None:
-        axes = Figure(figsize=(7.0, 2.8), layout="constrained").add_subplot(axes_class=ShownAxes)
-    (line,) = axes.plot(history["time_s"], history["theta_rad"])
-    axes.axhline(0.0, color="#999999", linewidth=0.6)
-    end = history["time_s"].iloc[-1]
-    impacts = [impact.time for impact in response.impacts if impact.time <= end]
-    axes.plot(impacts, [0.0] * len(impacts), "|", color=line.get_color(), markersize=9)
-    peak = f", {response.peak_ratio:.4g} θcr at most" if response.outcome.value == "rocked" else ""
-    axes.set(title=f"{response.outcome.value}{peak}, {len(response.impacts)} impacts",
-             xlabel="time  t  [s]", ylabel="rotation  θ  [rad]")  # fmt: skip
-    return axes

@@ -24,7 +24,6 @@ from studies.cases.refusal import BadInputError
 from studies.cases.window import LEAST_ONSETS, Window, pulse_of
 from studies.kit.arguments import Positive, as_bad_input
 from studies.kit.jobs import Job, Question, Row, answer
-from studies.kit.options import Running
 from studies.kit.say import part
 from studies.kit.study import Study, Tables
 from studies.measures.presets import titled
@@ -317,7 +316,6 @@ by pulse, of two similar blocks: --sources engines:naive.""",
     figures=figures,
     needed=needed,
     rows="defaults",
-    running=Running(time_limit=180.0),
     captions={
         "map": "Amplitude over frequency: which pulses overturn a block at once, which after an "
         "impact, with the friction that the exact motion needs, and where it would lift off; and "

@@ -200,7 +200,6 @@ the one at which its velocities hold is refused.""",
         "score": "The engine's presets along their steps, median error against run time.",
         "extremes": "Extreme cases, a column for each preset: the symbol says how its answer is.",
     },
-    running=Running(time_limit=stability.LIMIT_S),
 )
 
 
@@ -212,7 +211,7 @@ def command(
     quick: bool = False,
     json: Place | None = None,
     against: Place | None = None,
-    running: Running = STUDY.running,
+    running: Running = Running(),  # noqa: B008
 ) -> int:
     """Score one engine.
 

@@ -14,7 +14,6 @@ import pandas as pd
 from analytic.response import Response
 from studies.cases.extreme import Extreme, extremes
 from studies.kit.jobs import Job, Question, Row, ask, summary, unanswered
-from studies.kit.options import Running
 from studies.kit.say import out_of, part
 from studies.kit.study import Study, Tables
 from studies.measures.energy import SAMPLES
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
 
 SOLVERS = ("rk4", "average-acceleration", "dop853", "radau")
 METHODS = ("exact", *SOLVERS, *core_sources("", "fixed", "naive"))
-LIMIT_S, RUN_S = 600.0, 60.0
+RUN_S = 60.0
 """Time limit of a row, and of a run of an engine [s]."""
 MOST_STEPS = {"matrix": 5_000_000, "steps": 500_000}
 """Steps that a run of an engine may take, in each table."""
@@ -226,7 +225,6 @@ gives no result at all. Writes stability.csv, steps.csv, findings.txt and a pict
     finding=finding,
     shown=shown,
     figures=figures,
-    running=Running(time_limit=LIMIT_S),
     captions={
         "stability": "Extreme cases as rows, methods as columns: the symbol says whether the "
         "outcome is right or how it is wrong, and whether peak and energy are.",

@@ -1,9 +1,8 @@
-"""Time histories over each other, and axes that a notebook shows."""
+"""Time histories over each other."""
 
 from __future__ import annotations
 
 import math
-from io import BytesIO
 from typing import Any
 
 import pandas as pd
@@ -96,14 +95,3 @@ def _draw_errors(axes: Axes, panel: pd.DataFrame) -> None:
         axes.plot(worst.index, worst.clip(lower=LOWEST), line_of(source), color=colour)
     axes.set(yscale="log", ylabel="distance from\nexact  [θcr]", xlim=(0.0, found.index.max()))
     axes.grid(alpha=0.25)
-
-
-class ShownAxes(Axes):
-    """Axes of a figure that pyplot does not know, which a notebook would show as a line of text."""
-
-    def _repr_png_(self) -> bytes:
-        """Return the picture of the figure."""
-        picture = BytesIO()
-        if (figure := self.get_figure(root=True)) is not None:
-            figure.savefig(picture, format="png")
-        return picture.getvalue()

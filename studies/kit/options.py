@@ -40,7 +40,7 @@ class Computing:
     """
 
     jobs: Count | None = None
-    time_limit: TimeLimit = 60.0
+    time_limit: TimeLimit = 600.0
     cluster: str | None = None
 
     def __post_init__(self) -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, make_dataclass
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import pandas as pd
 from cyclopts import Parameter
@@ -29,17 +29,6 @@ Tables: TypeAlias = "Mapping[str, pd.DataFrame]"
 
 def _nothing(tables: Tables) -> Mapping[str, Any]:
     return {}
-
-
-def _with_defaults(running: Running) -> type[Running]:
-    """Return Running with a study's defaults, which hold where another of its options is given."""
-    hints = get_type_hints(Running, include_extras=True)
-    own = [(each, hints[each], getattr(running, each)) for each in asdict(running)]
-    place = {"__module__": __name__}
-    made = make_dataclass(
-        "Running", own, bases=(Running,), namespace=place, frozen=True, kw_only=True
-    )
-    return Parameter(name="*")(made)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +55,7 @@ class Study:
     needed: Callable[[Sequence[Row]], Sequence[Row]] = tuple  # rows whose failure is the study's
     texts: tuple[str, ...] = ()  # columns of words that may look like numbers
     rows: str = ""  # a table of the rows as they are: a folder without a store goes on from it
-    running: Running = Running()  # noqa: RUF009
+    alone: bool = False  # whether its jobs run one at a time, unless --jobs says otherwise
 
     def command(self) -> Callable[..., int]:
         """Return its command: the function whose parameters are the command's options."""
@@ -77,11 +66,13 @@ class Study:
             taken["sources"] = (Annotated[tuple[str, ...], sources_option()], self.sources)
         if self.quick:
             taken["quick"] = (Annotated[bool, Parameter(help=self.quick)], False)
-        taken["running"] = (_with_defaults(self.running), self.running)
+        taken["running"] = (Running, Running())
 
         def command(**given: Any) -> int:
             given = {name: value for name, (_, value) in taken.items()} | given
             out, running = given.pop("out"), given.pop("running")
+            if self.alone and running.jobs is None and running.cluster is None:
+                running = replace(running, jobs=1)
             options = [given.pop("options")] if self.options is not None else []
             jobs = self.jobs(given.get("sources", ()), given.get("quick", False), *options)
             asked = asdict(*options) if options else {}

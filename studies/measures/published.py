@@ -39,24 +39,19 @@ def columns() -> dict[tuple[str, str], tuple[str, ...]]:
     }
 
 
-def column_of(table: str, name: str) -> tuple[str, ...]:
-    """Return type, unit and meaning of a column of a table, as "stability/steps"; or KeyError."""
-    known = columns()
-    return known.get((table, name)) or known["", name]
-
-
 def meaning_of(measure: str) -> str:
     """Return what a column measures, for the head of a table."""
-    return column_of("", measure)[-1].partition(";")[0].replace("|", "∣")
+    return columns()["", measure][-1].partition(";")[0].replace("|", "∣")
 
 
 def dictionary(published: Path) -> pd.DataFrame:
     """Return a line for each column of every published table: its type, unit and meaning."""
+    known = columns()
     lines = [
-        (f"{path.parent.name}/{path.name}", name, *column_of(table, str(name)))
+        (f"{path.parent.name}/{path.name}", name, *(known.get((table, name)) or known["", name]))
         for path in sorted(published.glob("*/*.csv*"))
         for table in [f"{path.parent.name}/{path.name.partition('.')[0]}"]
-        for name in pd.read_csv(path, nrows=0)
+        for name in map(str, pd.read_csv(path, nrows=0))
     ]
     return pd.DataFrame(lines, columns=["table", "column", "type", "unit", "meaning"])
 
@@ -89,7 +84,8 @@ def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
         {**first, "cases": "sum", "max_error": "max"}
     )
     uses = [ENGINES[name].preset(preset) for name, preset in lines[SETTING[:2]].to_numpy()]
-    steps = lines["value"].fillna(pd.Series(map(_declared_step, uses)))
+    p = max(case.block.p for case in sweep_cases((6,)))  # of a step in seconds, the largest p dt
+    steps = lines["value"].fillna(pd.Series([preset.step_s * p for preset in uses]))
     preset = lines.groupby(SETTING[:2], sort=False).ngroup()
     return lines.iloc[np.lexsort((-steps, preset))].reset_index(drop=True)
 
@@ -139,21 +135,6 @@ def declared_value(preset: Preset) -> float:
     return preset.ordinary_step()
 
 
-def _declared_step(preset: Preset) -> float:
-    """Return what `declared_value` does; of a step in seconds, the largest p dt in the paper."""
-    if math.isnan(preset.step_s):
-        return declared_value(preset)
-    return preset.step_s * max(case.block.p for case in sweep_cases((6,)))
-
-
-def random_runs(published: Path) -> pd.DataFrame:
-    """Return the published random cases at each setting; none where they were not run."""
-    path = published / RANDOM
-    columns = [*SETTING, "case", "condition", "error"]
-    found = pd.read_csv(path) if path.is_file() else pd.DataFrame(columns=columns)
-    return found.astype({"value": float})
-
-
 def counted(known: pd.DataFrame, runs: pd.DataFrame, target: float) -> pd.DataFrame:
     """Return settings with COUNTS of their random cases: all, off, off though well conditioned.
 
@@ -163,5 +144,5 @@ def counted(known: pd.DataFrame, runs: pd.DataFrame, target: float) -> pd.DataFr
     calm = runs["condition"] < WELL_CONDITIONED
     marked = runs[SETTING].assign(random_cases=1, random_off=off, random_calm_off=off & calm)
     found = marked.groupby(SETTING, dropna=False)[COUNTS].sum().reset_index()
-    merged = known.astype({"value": float}).merge(found, on=SETTING, how="left")
+    merged = known.merge(found, on=SETTING, how="left")
     return merged.assign(**{name: merged[name].fillna(0).astype(int) for name in COUNTS})

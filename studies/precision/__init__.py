@@ -19,7 +19,6 @@ from engines import ENGINES
 from engines.declaration import Engine
 from studies.cases.paper import HISTORIES, Case, chosen_cases, free_rocking_window
 from studies.kit.jobs import Job, Question, Row, ask, summary
-from studies.kit.options import Running
 from studies.kit.say import duration, part
 from studies.kit.study import Study, Tables
 from studies.measures.costs import EXACT, best_of, best_of_each, exact_cost, method_title
@@ -316,6 +315,6 @@ others. With more than one of --jobs they slow each other down. It takes about 1
         "for each of its presets from coarse to fine, all other methods pale behind; in the strip "
         "above, settings with which a case fails or has a wrong outcome.",
     },
-    running=Running(jobs=1),
+    alone=True,
 )
 command = STUDY.command()

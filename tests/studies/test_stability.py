@@ -180,7 +180,7 @@ def test_every_verdict_has_a_mark_of_its_own():
 
 
 @pytest.mark.parametrize(("words", "limit"), [("--jobs 2", 600.0), ("--time-limit 5", 5.0)])
-def test_a_studys_own_time_limit_holds_beside_other_options(words, limit, tmp_path, monkeypatch):
+def test_the_time_limit_is_that_of_all_or_the_one_given(words, limit, tmp_path, monkeypatch):
     seen = []
     monkeypatch.setattr(
         Study, "carry_out", lambda self, out, jobs, running, **_: seen.append(running)
