@@ -125,15 +125,10 @@ def test_rest_and_uplift_again_in_both_directions():
     # a squat block loses all but a little at an impact, so it rests within each half cycle
     block = RigidBlock(width=1.0, height=1.05)
     motion = pulse(1.01, 0.9, 5, block)
-    response = simulate(block, motion, times=np.linspace(0, motion.duration, 4001))
+    response = simulate(block, motion)
     assert len(response.uplifts) == 5
     assert len(response.rests) >= 4
-    history = response.history
-    sides = {
-        math.copysign(1, history.theta[np.searchsorted(history.time, t + 0.02)])
-        for t in response.uplifts
-    }
-    assert sides == {-1.0, 1.0}
+    assert len({impact.velocity_before > 0.0 for impact in response.impacts}) == 2
     # every half cycle is the mirror of the one before: the rest has forgotten the past
     assert np.diff(response.uplifts) == pytest.approx(math.pi / motion.omega, rel=1e-12)
 

@@ -89,6 +89,15 @@ def test_how_a_block_lies_does_not_depend_on_the_steps(engine, preset):
     )
 
 
+@every_landing_use
+def test_the_size_of_a_block_does_not_matter(engine, preset):
+    """Nothing of it is clamped, lost or rounded away: single precision keeps 1e-4 of the peak."""
+    blocks = [RigidBlock(width=width, height=3.0 * width) for width in (0.02, 0.5, 20.0)]
+    asked = {"preset": preset, "accuracy": "loose"}
+    peaks = [rocked(engine, pulse(1.3, 3.0, 2, it), system=it, **asked).peak_ratio for it in blocks]
+    assert peaks == pytest.approx([peaks[1]] * 3, rel=1e-4)
+
+
 @pytest.mark.parametrize(("engine", "preset"), in_both_frames(TUNED))
 def test_frames_agree(engine, preset):
     """A moving base is the body force -m u_g'': the two differ by rounding and slip alone."""

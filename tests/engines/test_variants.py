@@ -107,15 +107,3 @@ def test_stiffness_reads_back_where_the_library_tells(monkeypatch):
     monkeypatch.setattr(BulletWorld, "_call", forgetful)
     response = run("pybullet", scene(preset=BEST, settings=settings))
     assert response.message.startswith("contactDamping was set to")
-
-
-def test_a_base_without_velocity_carries_nothing():
-    for engine, way in (("pybullet", "velocity"), ("mujoco", "surfacevel")):
-        moved, told = (
-            of(engine, BEST, f"moving base: {word}") for word in ("by position alone", f"by {way}")
-        )
-        fails, rocks = (
-            run(engine, scene(preset=BEST, settings=v.settings, **v.scene)) for v in (moved, told)
-        )
-        assert fails.outcome is Outcome.FAILED
-        assert rocks.outcome is Outcome.ROCKED
