@@ -8,8 +8,7 @@ import pytest
 from commanding import CASE, refused
 
 from analytic.response import Response
-from engines.registry import OWN
-from studies.__main__ import COMMANDS, run
+from studies.__main__ import run
 from studies.sources.registry import SOURCES, Effort, Source
 
 
@@ -53,18 +52,6 @@ def test_what_arithmetic_raises_is_one_line_and_what_a_mistake_does_is_not(
             run(line)
     else:
         refused(capsys, line, str(error) or type(error).__name__)
-
-
-def test_help_explains_units(capsys):
-    assert run(["--help"]) == 0
-    text = capsys.readouterr().out
-    assert all(name in text for name in COMMANDS)
-    assert run(["compare", "--help"]) == 0
-    text = " ".join(capsys.readouterr().out.split())
-    for unit in ("[m]", "[g]", "[rad/s]", "[s]"):
-        assert unit in text
-    here = [name for name in SOURCES if name in OWN or SOURCES[name].kind != "engine"]
-    assert all(name in text for name in here)
 
 
 def test_accuracy_and_step_reach_only_the_sources_they_are_for():

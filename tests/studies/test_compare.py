@@ -7,13 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from commanding import CASE, compared, python, refused
 from given import BLOCK, PULSE
 
 import studies
 from analytic import RockingFrame, SinePulse, SlidingBlock, Still, simulate
-from studies import respond, side_by_side
+from studies import plot, respond, side_by_side, table
 from studies.__main__ import run
 from studies.measures.halving import published_trust
 
@@ -77,9 +78,9 @@ def test_the_text_fits_the_screen_and_has_the_columns_of_json(capsys, tmp_path):
     asked = [*CASE, "--duration", 2.5, "--sources", "rk4", "average-acceleration", "housner"]
     text, rows = text_of(capsys, *asked, "--plot", plot), compared(capsys, *asked)[1]
     assert max(len(line) for line in text.splitlines()) <= 100
-    head, table = text.split("\n\n")
+    head, lines = text.split("\n\n")
     assert "2.5 s" in head and f"kappa {rows['rk4']['kappa']:.3g}" in head
-    names, *lines = (line.split() for line in table.splitlines())
+    names, *lines = (line.split() for line in lines.splitlines())
     assert {*names} <= {*FIELDS} and [line[0] for line in lines] == [*rows]
     found = dict(zip(names, lines[0], strict=False))
     assert found["peak_ratio"] == f"{rows['rk4']['peak_ratio']:.6f}"
@@ -204,14 +205,14 @@ def test_estimates_are_of_half_the_step_where_asked_for(capsys):
 def test_side_by_side_is_what_compare_tells(capsys):
     names = ["exact", "housner", "mujoco:fixed"]
     _, rows = compared(capsys, *CASE, "--friction", "0.8", "--sources", *names)
-    table = side_by_side(BLOCK, PULSE, (name for name in names), friction=0.8)
-    assert list(table["source"]) == names
-    assert list(table.columns) == list(rows["exact"])
-    for row in table.drop(columns="wall_s").to_dict("records"):
+    kept = side_by_side(BLOCK, PULSE, (name for name in names), friction=0.8)
+    assert list(kept["source"]) == names
+    assert list(kept.columns) == list(rows["exact"])
+    for row in kept.drop(columns="wall_s").to_dict("records"):
         for name, value in row.items():
             finite = not isinstance(value, float) or math.isfinite(value)
             assert rows[row["source"]][name] == (value if finite else None)
-    assert table.set_index("source").loc["housner", "peak_ratio"] == math.inf
+    assert kept.set_index("source").loc["housner", "peak_ratio"] == math.inf
 
 
 @pytest.mark.parametrize(
@@ -263,3 +264,25 @@ def test_a_slip_of_a_unit_is_answered_by_what_works(capsys):
     capsys.readouterr()
     for given in (["100"], ["91", "--degrees"]):
         assert "?" not in refused(capsys, [*tilted, *given])
+
+
+@pytest.mark.parametrize("source", ["exact", "rk4", "mujoco:naive"])
+def test_a_history_is_a_table_and_a_picture(source):
+    response = respond(source, BLOCK, PULSE, duration=2.0, times=np.linspace(0.0, 2.0, 501))
+    kept = table(response)
+    assert list(kept.columns) == ["time_s", "theta_rad", "velocity_rad_s"]
+    np.testing.assert_array_equal(kept["theta_rad"], response.history.theta)
+    assert kept["theta_rad"].abs().max() <= response.peak_ratio * BLOCK.alpha * (1.0 + 1e-12)
+    axes = plot(response)
+    assert axes._repr_png_().startswith(b"\x89PNG")
+    line, _, ticks = axes.lines
+    np.testing.assert_array_equal(line.get_ydata(), kept["theta_rad"])
+    assert len(ticks.get_xdata()) == sum(i.time <= 2.0 for i in response.impacts)
+    assert f"{response.peak_ratio:.4g} θcr" in axes.get_title()
+    assert plot(response, axes) is axes
+
+
+@pytest.mark.parametrize("show", [table, plot])
+def test_what_has_no_history_is_refused(show):
+    with pytest.raises(ValueError, match="no history; ask for one with times="):
+        show(simulate(BLOCK, PULSE))

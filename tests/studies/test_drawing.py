@@ -11,8 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from engines import ENGINES
-from studies import contact
-from studies.drawing.contact import MATTER, draw_contact
 from studies.drawing.labels import Name, around
 from studies.drawing.linearizations import ONSETS
 from studies.drawing.overturning import VERDICTS
@@ -25,7 +23,7 @@ from studies.drawing.styles import (
     title_of,
 )
 from studies.kit.pictures import lay_out
-from studies.measures.presets import PRESETS, look_of
+from studies.measures.presets import look_of
 from studies.measures.published import PUBLISHED
 
 # Machado, Oliveira and Fernandes, 2009, table 1, severity 1: linear RGB to those without a cone
@@ -68,13 +66,9 @@ def test_sources_are_told_apart_by_colour_line_or_marker(vision):
         and distance(looks[first][0], looks[second][0], vision) < APART
     ]
     assert alike == []
-
-
-@pytest.mark.parametrize("vision", VISIONS)
-def test_filled_areas_and_families_of_lines_are_told_apart(vision):
-    areas = [colour for colour, _ in VERDICTS.values()]
-    for colours in (areas, [colour for colour, _ in ONSETS.values()]):
-        assert min(distance(*pair, vision) for pair in itertools.combinations(colours, 2)) > APART
+    for areas in (VERDICTS, ONSETS):
+        pairs = itertools.combinations([colour for colour, _ in areas.values()], 2)
+        assert min(distance(*pair, vision) for pair in pairs) > APART
 
 
 def test_no_engine_takes_the_look_of_another():
@@ -100,25 +94,6 @@ def test_names_keep_clear_of_each_other_of_lines_and_of_words():
         assert not any(box.overlaps(other) for other in boxes if other is not box)
         assert not any(box.contains(*point) for point in line)
         assert axes.get_window_extent().count_contains(box.get_points()) == 2
-
-
-def test_of_a_contact_is_drawn_what_matters_and_the_rest_is_counted():
-    lines = contact.STUDY.read(PUBLISHED / "contact")["variants"]
-    drawn = draw_contact(lines)
-    axes = next(panel for panel in drawn.axes if panel.get_title("left") == "MuJoCo")
-    words = [label.get_text() for label in axes.get_yticklabels()]
-    mine = lines[(lines["engine"] == "mujoco") & (lines["factor"] != "")]
-    assert len(words) == MATTER + lines.loc[lines["engine"] == "mujoco", "preset"].nunique()
-    (rest,) = [text.get_text() for text in axes.texts if "others" in text.get_text()]
-    assert rest.startswith(f"{len(mine) - MATTER} others")
-    broken = mine[mine["failed"] == mine["cases"]]
-    for _, group in broken.groupby("preset"):  # of each preset one that breaks every case
-        assert any(word.startswith(f"{name}: ") for word in words for name in group["factor"])
-    turns = [sum(label.get_color() == preset.colour for label in axes.get_yticklabels())
-             for preset in PRESETS.values()]  # fmt: skip
-    assert sorted(turns)[-4:] == [1, 3, 3, 3]  # each preset, and in turn its own
-    width, height = drawn.get_size_inches()
-    assert height < width * lines["engine"].nunique() / 3.0
 
 
 FOLDERS = {"advise": "advice"}

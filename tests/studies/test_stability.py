@@ -12,7 +12,6 @@ from analytic.response import History, Impact
 from studies import stability
 from studies.__main__ import run as rocking
 from studies.cases.extreme import QUICK, SPRINGS, Extreme, extremes
-from studies.drawing.stability import MARKS
 from studies.kit.run import lost_row, run
 from studies.kit.study import Study
 from studies.measures.energy import energy, growth
@@ -171,12 +170,6 @@ def test_only_a_source_without_any_result_is_needed():
     rows = [("a", "failed"), ("a", "rocked"), ("b", "failed")]
     rows = [{"source": source, "outcome": outcome} for source, outcome in rows]
     assert stability.without_result(rows) == rows[2:]
-
-
-def test_every_verdict_has_a_mark_of_its_own():
-    assert set(MARKS) == set(Verdict)
-    colours, symbols, *_ = zip(*MARKS.values(), strict=True)
-    assert len(set(colours)) == len(set(symbols)) == len(Verdict)
 
 
 @pytest.mark.parametrize(("words", "limit"), [("--jobs 2", 600.0), ("--time-limit 5", 5.0)])
