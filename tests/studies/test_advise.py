@@ -12,7 +12,7 @@ from given import BLOCK
 from engines import ENGINES
 from engines.declaration import AT_REST, DEFAULT, OWN_STEPS
 from studies.__main__ import run
-from studies.advise import find, finding, keeps, why, write
+from studies.advise import find, keeps, why, write
 from studies.advise import symptoms as seen
 from studies.kit.tables import read_table, table_in
 from studies.measures.finer import cheapest_kept
@@ -86,15 +86,6 @@ def test_a_lucky_step_and_one_with_a_well_conditioned_miss_are_not_advised(lines
     assert (best is None) == (value is None) and (best is None or best["value"] == value)
     if best is None:
         assert re.search(reason, why(table, LANDING, 1e-2))
-
-
-def test_the_finding_names_the_cheapest_of_the_smallest_error():
-    lines = find(CORE, [0.1, 1e-4], BLOCK)
-    best = lines[lines["target"] == 1e-4].nsmallest(1, "wall_s").iloc[0]
-    sentence = finding({"advice": lines})
-    assert ENGINES[best["engine"]].title in sentence and "0.01 %" in sentence
-    assert f"{1e3 * best['wall_s']:.3g} ms" in sentence
-    assert "0.01 %" in finding({"advice": lines.assign(target=1e-4, message="none")})
 
 
 def advised(engine):

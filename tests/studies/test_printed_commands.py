@@ -1,16 +1,11 @@
 """The commands that pages print: each is taken as printed."""
 
-import os
 import re
 import shlex
-import subprocess
 import tomllib
-import venv
-from importlib import metadata
 
 import pytest
 from commanding import PROSE, ROOT
-from packaging.requirements import Requirement
 
 from studies.__main__ import COMMANDS, run
 from studies.kit.app import make_app
@@ -19,8 +14,12 @@ from studies.page.chapters import PARTS
 
 def commands(name):
     """Return the commands that a page prints in its blocks, in their order."""
-    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / name).read_text(encoding="utf-8"), re.S)
-    return [line for block in blocks for line in block.splitlines() if line.startswith("rocking ")]
+    blocks = re.findall(
+        r"```(?:sh|yaml)\n(.*?)```", (ROOT / name).read_text(encoding="utf-8"), re.S
+    )
+    return [
+        line for block in blocks for line in re.findall("^ *(?:- run: )?(rocking .*)", block, re.M)
+    ]
 
 
 def taken(arguments):
@@ -50,49 +49,6 @@ def test_a_command_of_the_readme_works_as_printed(command, tmp_path, monkeypatch
         assert capsys.readouterr().out
     else:
         taken(arguments)
-
-
-def needed(name, known):
-    """Add to the known distributions those that one needs without its extras."""
-    if name not in known:
-        known[name] = metadata.distribution(name)
-        for asked in map(Requirement, known[name].requires or ()):
-            if asked.marker is None or asked.marker.evaluate({"extra": ""}):
-                needed(asked.name, known)
-    return known
-
-
-def environment(folder):
-    """Return the Python of an environment into which the packages of the project are linked."""
-    venv.create(folder, symlinks=True)
-    (site,) = folder.glob("lib/python*/site-packages")
-    found = needed("rocking", {})
-    del found["rocking"]
-    for package in found.values():
-        for top in {file.parts[0] for file in package.files} - {"..", "__pycache__"}:
-            if not (site / top).exists():
-                (site / top).symlink_to(package.locate_file(top))
-    return folder / "bin" / "python"
-
-
-@pytest.mark.slow
-@pytest.mark.processes
-@pytest.mark.parametrize("command", [it for it in commands("README.md") if "my_engine" not in it])
-def test_a_command_of_the_readme_runs_to_its_end_with_the_core_packages_alone(command, tmp_path):
-    """That of `score` is of pymunk; `test_score` runs it."""
-    _, *arguments = shlex.split(command)
-    interpreter = environment(tmp_path / "core")
-    (tmp_path / "studies").symlink_to(ROOT / "studies")
-    done = subprocess.run(
-        [interpreter, "-m", "studies", *arguments],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode in (0, 1) and "Traceback" not in done.stderr, done.stderr
-    assert done.stdout
-    assert arguments[0] != "report" or (tmp_path / "DIR" / "report.html").is_file()
 
 
 @pytest.mark.parametrize("name", PROSE)

@@ -4,7 +4,7 @@ import shlex
 import time
 
 import pytest
-from commanding import BLOCK, CASE, PULSE, python, refused
+from commanding import BLOCK, CASE, PULSE, refused
 from records import AT2
 
 REFUSED = """
@@ -170,15 +170,6 @@ def test_what_cannot_be_asked_is_one_line_at_once(row, place, capsys):
     assert "Path" not in refused(capsys, words_of(line), *parts)
     assert time.process_time() - begin < 2.0
     assert sorted(place.iterdir()) == before
-
-
-@pytest.mark.parametrize("row", ROWS[::60], ids=[line for line, *_ in ROWS[::60]])
-def test_it_ends_the_process_with_2(row, place):
-    line, *parts = row
-    done = python("-m", "studies", *words_of(line), cwd=place)
-    assert (done.returncode, done.stdout) == (2, "")
-    (said,) = done.stderr.splitlines()
-    assert [part for part in parts if part not in said] == []
 
 
 @pytest.mark.parametrize("name", ["thesis.tex", ".hidden", "sweep", "report.html"])
