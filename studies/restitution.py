@@ -101,10 +101,7 @@ def job_of(
 
 
 def measure(job: Job) -> Row:
-    """Return what the block keeps: of its angular rate, and of the speed of the striking corner.
-
-    All is nan where the library says that it went wrong, which counts as broken, or fails.
-    """
+    """Return what the block keeps of its rate and of its corner's speed; nan where a run broke."""
     nothing = (math.nan, math.nan, math.nan)
     found, outcome, message = nothing, "failed", job.lost.message if job.lost else ""
     try:

@@ -334,9 +334,8 @@ def _wrong_motion(source: Source) -> str:
 def measured_moment(source: Source) -> float:
     """Return the part of a step after which its velocity holds; nan if no pull moves a block so.
 
-    A block is thrown off its base, left alone, and pulled during one step. How much of the velocity
-    gained moves it within that step says what comes first: all of it where the velocity is changed
-    first, half where both go together, none where the position is changed first.
+    A block in the air is pulled during one step: all of the velocity gained moves it within that
+    step where the velocity is changed first, half where both go together, else none.
     """
     pull = 10.0 * BLOCK.gravity
     ups = [pull] * 4 + [0.0] * 24 + [-pull] + [0.0] * 4

@@ -116,8 +116,7 @@ def largest_step(
 def largest_good(good: Callable[[float], bool], factor: float) -> float:
     """Return the largest step up to which all steps tried are good; nan if not even the smallest.
 
-    From START to finer steps until one is good, to coarser ones until one is not, and between the
-    two. A step beyond the first bad one that happens to be good does not count.
+    A step beyond the first bad one that happens to be good does not count.
     """
     low = START
     while not good(low):

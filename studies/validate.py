@@ -18,7 +18,7 @@ from analytic.block import Rocker
 from analytic.response import Outcome
 from studies.cases.drawn import Drawn, RandomCase, census, draw
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import Count, one_of, refuse_both, refuse_given
+from studies.kit.arguments import Count, one_of, refuse_both
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.options import EffortOptions, Yours
 from studies.kit.say import out_of, part
@@ -61,8 +61,6 @@ class Options(EffortOptions):
         the two peaks bounds the error.
     cases
         Number of random cases; by default 500, with --halves 300.
-    tests
-        Number of other random cases, on which the factors of --halves are tried; by default 100.
     seed
         Seed of the random numbers, a positive whole number; another one draws other cases.
     scene
@@ -71,7 +69,6 @@ class Options(EffortOptions):
 
     halves: bool = False
     cases: Count | None = None
-    tests: Count | None = None
     seed: Count = 1
     scene: Annotated[Drawn, one_of(Drawn)] = "block"
     yours: Yours = Yours()  # noqa: RUF009
@@ -85,12 +82,10 @@ class Options(EffortOptions):
 def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
     """Return the jobs in the order of the table: case by case, source by source."""
     refuse_both(dt=options.yours.dt, step=options.step)
-    if not options.halves:
-        refuse_given({"tests": options.tests}, "only with --halves")
-    cases, tests = options.cases or CASES[options.halves][quick], options.tests or TESTS[quick]
+    cases = options.cases or CASES[options.halves][quick]
     options.refuse_idle(sources)
     if options.halves:
-        return _with_halves(sources, cases, tests, options)
+        return _with_halves(sources, cases, TESTS[quick], options)
     return [
         _job({"seed": options.seed}, case, source, settings)
         for case in islice(draw(options.seed, options.scene), cases)

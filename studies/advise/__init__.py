@@ -112,10 +112,7 @@ def command(
 
 
 def find(engines: Sequence[str], targets: Sequence[float], block: RigidBlock) -> pd.DataFrame:
-    """Return the columns of advice.csv: for each error, engine and preset its cheapest setting.
-
-    A setting counts if it keeps the error with every finer one: a coarse step may be lucky.
-    """
+    """Return the columns of advice.csv: for each error, engine and preset its cheapest setting."""
     settings, runs = known.settings(PUBLISHED, engines), pd.read_csv(PUBLISHED / known.RANDOM)
     rows: list[Row] = []
     for target in targets:

@@ -81,10 +81,7 @@ def find(engines: Iterable[str]) -> pd.DataFrame:
 
 
 def _helping(mine: pd.DataFrame, column: str) -> pd.DataFrame:
-    """Return the single settings that halve, from the defaults, what there is, and break nothing.
-
-    Whatever defaults that fail leave is halved by a setting that does not fail.
-    """
+    """Return the single settings that halve what the defaults leave, and break nothing."""
     mine = mine[(mine["preset"] == DEFAULT) & (mine["factor"] != OWN_STEPS)]
     usual = mine[mine["factor"] == ""].iloc[0]
     most, median = (abs(_size(usual, name)) for name in (column, "median_error"))
@@ -144,10 +141,7 @@ def settings_in_words(
 
 
 def write(lines: pd.DataFrame, block: RigidBlock, friction: float | None) -> Iterator[str]:
-    """Yield what each setting that helps sets and the defaults do not, in the library's words.
-
-    Settings are quoted for a block and a friction, by default the library's.
-    """
+    """Yield what each setting that helps sets and the defaults do not, in the library's words."""
     for (engine, setting), group in lines[lines["setting"] != ""].groupby(["engine", "setting"]):
         known = {f"{each.factor}: {each.level}": each.settings for each in variants(str(engine))
                  if each.preset == DEFAULT}  # fmt: skip

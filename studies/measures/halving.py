@@ -77,10 +77,7 @@ def factors(lines: pd.DataFrame) -> pd.DataFrame:
         kept, tested = mine.dropna(subset="over"), other["over"].dropna()
         wrong = mine[wrong_in(mine).isin((FALL, REST))]
         over = kept["over"].to_numpy()
-        levels = (0.5, BOUNDED, 1.0)
-        half, most, every = (
-            np.quantile(over, levels, method="inverted_cdf") if len(over) else [math.nan] * 3
-        )
+        most = np.quantile(over, BOUNDED, method="inverted_cdf") if len(over) else math.nan
         low, high = interval(over)
         table.append(
             {
@@ -89,13 +86,9 @@ def factors(lines: pd.DataFrame) -> pd.DataFrame:
                 "survivors": len(kept),
                 "median_estimate": kept["estimate"].median(),
                 "median_error": kept["error"].abs().median(),
-                "factor_50": half,
                 "factor_95": most,
                 "factor_95_low": low,
                 "factor_95_high": high,
-                "factor_all": every,
-                "within_3": (kept["over"] <= 3.0).mean(),
-                "within_10": (kept["over"] <= 10.0).mean(),
                 "wrong": len(wrong),
                 "told": int((wrong["estimate"] == math.inf).sum()),
                 "tested": len(tested),

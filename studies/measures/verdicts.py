@@ -62,9 +62,7 @@ def reference(case: Extreme) -> tuple[Response, float]:
 def judge(case: Extreme, source: str, response: Response) -> dict[str, Any]:
     """Return the verdict on a source's response, and what compares it with the exact solution.
 
-    The verdict is INVALID where the reference does not hold for an engine, unless the response is
-    right all the same, or the run broke down. Its energy counts only where it has a history that
-    goes on after the pulse.
+    It is INVALID where the reference does not hold, unless the answer is right, or the run broke.
     """
     exact, kappa = reference(case)
     both = response.outcome is Outcome.ROCKED is exact.outcome
@@ -108,10 +106,7 @@ def _verdict(case: Extreme, response: Response, error: float, grown: float) -> V
 
 
 def invalidity(case: Extreme, source: str) -> str:
-    """Say why an engine may differ from the exact solution; models solve its equation, and may not.
-
-    Empty where it may not.
-    """
+    """Say why an engine may differ from the exact solution; empty where it, or a model, may not."""
     exact, friction = reference(case)[0], friction_of(case, source)
     if math.isnan(friction):
         return ""

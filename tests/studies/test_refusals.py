@@ -115,7 +115,6 @@ contact --out DIR --quickly | --quickly
 restitution --out DIR --engines moreau | moreau | pybullet, mujoco
 restitution --out DIR --engines drake | drake | no coefficient
 restitution --out DIR --quick | --quick
-validate --out DIR --tests 3 | --tests is 3; it may be given only with --halves
 validate --out DIR --halves --sources exact | 'exact'; with --halves it must be an engine
 validate --out DIR --halves --sources drake | steps that can be halved
 validate --out DIR --sources exact --step 0.1 | --sources must name a solver or an engine
