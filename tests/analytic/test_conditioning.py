@@ -155,11 +155,8 @@ def test_arrays_and_single_responses_agree(model):
     assert peaks.shape == outcomes.shape == moved.shape == (3, 4)
     for at in product(range(3), range(4)):
         block = RigidBlock(width=1.0, height=1.0 / math.tan(alpha[at[0], 0]))
-        motion = SinePulse.in_g(
-            math.tan(block.alpha) + 0.1,
-            omega=omega[at[1]] * block.p,
-            half_cycles=int(half_cycles[at[1]]),
-        )
+        omega_s, count = omega[at[1]] * block.p, int(half_cycles[at[1]])
+        motion = SinePulse.in_g(math.tan(block.alpha) + 0.1, omega=omega_s, half_cycles=count)
         response = simulate(block, motion, model)
         assert response.outcome is outcomes[at]
         assert response.peak_ratio == pytest.approx(peaks[at], rel=1e-9)

@@ -104,11 +104,3 @@ def test_memory_that_is_not_where_it_should_be_is_left_alone(monkeypatch):
         assert all_but_times(rocked("mujoco", accuracy="loose")) == all_but_times(compiled)
     finally:
         mujoco_loop.usable.cache_clear()
-
-
-@pytest.mark.parametrize(("left", "form"), [(1e9, False), (100.0, True), (0.0, True)])
-def test_many_steps_are_compiled_and_a_few_are_not(left, form, monkeypatch):
-    """That is decided before a run: a process that has taken its steps in Python takes no more."""
-    monkeypatch.setattr(look.Patience, "left", left)
-    assert look.pays_to_compile(scene(), 1e-3) is form
-    assert not look.pays_to_compile(scene(compiled=False), 1e-3)

@@ -1,14 +1,17 @@
-"""What the tables of settings say of the libraries' own defaults is what the libraries report."""
+"""What is said of the libraries' own defaults is what they report, and naive leaves them so."""
 
 import importlib
+import math
 from collections import defaultdict
 
+import numpy as np
 import pytest
-from uses import HERE, rocked
+from uses import BLOCK, HERE, rocked, scene
 
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Reason
 from engines.parts import imported
+from engines.run.run import build
 
 OWN = "friction of a box of which nothing is said"
 
@@ -175,3 +178,48 @@ def test_what_is_called_without_effect_has_none_and_the_rest_has(engine, changed
     own, other = peak(engine), peak(engine, **changed)
     assert own > 0.0
     assert (other != own, abs(other - own) > 0.01) == (felt, felt)
+
+
+BARE = """<mujoco><worldbody><body name="there" mocap="true"/><body name="here"><freejoint/>
+<geom type="box" size="1 1 1"/></body></worldbody>
+<equality><weld body1="there" body2="here"/></equality></mujoco>"""
+
+
+def test_what_naive_pybullet_does_not_set_is_the_library_s_own():
+    """Damping cannot be read back: two boxes that fly are slowed alike."""
+    p = pytest.importorskip("pybullet")
+    world, bare = build(HERE["pybullet"].use(scene(preset="naive"))), p.connect(p.DIRECT)
+    half = (0.5 * BLOCK.width, 0.5 * BLOCK.width, 0.5 * BLOCK.height)
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=half, physicsClientId=bare)
+    body = p.createMultiBody(375.0, box, physicsClientId=bare)
+    read = []
+    for client, block in ((world._client, world.bodies[0]), (bare, body)):
+        place = (0.0, 0.0, 100.0), (0.0, 0.0, 0.0, 1.0)
+        p.resetBasePositionAndOrientation(block, *place, physicsClientId=client)
+        p.resetBaseVelocity(block, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), physicsClientId=client)
+        for _ in range(240):
+            p.stepSimulation(physicsClientId=client)
+        rest = p.getDynamicsInfo(block, -1, physicsClientId=client)[2:]  # after mass and friction
+        parameters = p.getPhysicsEngineParameters(physicsClientId=client)
+        velocity = np.ravel(p.getBaseVelocity(block, physicsClientId=client)).tolist()
+        read.append((rest, parameters, velocity))
+    world.close()
+    p.disconnect(bare)
+    assert read[0] == read[1]
+    assert read[0][2][0] < math.exp(-0.04)
+
+
+def test_what_naive_mujoco_does_not_set_is_the_library_s_own():
+    mj = pytest.importorskip("mujoco")
+    world = build(HERE["mujoco"].use(scene(preset="naive")))
+    bare, read = mj.MjModel.from_xml_string(BARE), world.model
+    for name in dir(bare.opt):
+        found = getattr(read.opt, name)
+        if not name.startswith("_") and not callable(found):
+            assert np.array_equal(found, getattr(bare.opt, name)), name
+    for name in ("solref", "solimp", "friction", "margin", "gap", "condim", "solmix", "priority"):
+        own = getattr(bare, f"geom_{name}")[0]
+        assert all(np.array_equal(found, own) for found in getattr(read, f"geom_{name}")), name
+    for name in ("eq_solref", "eq_solimp"):
+        assert np.array_equal(getattr(read, name), getattr(bare, name)), name
+    world.close()

@@ -14,7 +14,6 @@ from uses import BLOCK, pulse, scene
 from analytic import Record, simulate
 from engines.declaration import Stepping
 from engines.run.ground import mean_velocity_of
-from engines.run.steps import loads_of
 from engines.world import ContactPhase, Moment
 
 MOTION = pulse(1.3, 3.0, 2)
@@ -133,15 +132,3 @@ def test_the_mean_velocity_of_the_base_is_its_displacement_over_time():
         moved = WANDERING.displacement(finish) - WANDERING.displacement(begin)
         expected = float(moved) / (finish - begin)
         assert mean_velocity(begin, finish) == pytest.approx(expected, abs=1e-12)
-
-
-def test_loads_are_where_the_acceleration_exceeds_the_onset():
-    loads = loads_of(WANDERING, 1.2)
-    grid = np.linspace(0, WANDERING.duration, 20_001)
-    beyond = np.abs(WANDERING.acceleration(grid)) > 1.2
-    inside = np.zeros_like(beyond)
-    for load in loads:
-        inside |= (grid > load.begin) & (grid < load.end)
-        sign = -math.copysign(1.0, float(WANDERING.acceleration(0.5 * (load.begin + load.end))))
-        assert load.side == sign
-    assert (beyond == inside).all()
