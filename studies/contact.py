@@ -63,7 +63,16 @@ def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
     """Return the jobs of every variant, at one step of all and then at the library's own."""
     framed = options.scene == "frame"
     cases: Sequence[tuple[str, Case | RandomCase]]
-    cases = frame_cases(quick) if framed else block_cases(quick)
+    cases = (
+        frame_cases(quick)
+        if framed
+        else [
+            (kind, case)
+            for kind, some in chosen_cases(True).items()
+            for case in some
+            if not quick or (kind == "typical" and case.aspect in (2, 4))
+        ]
+    )
     tried = [variant for engine in options.engines for variant in variants(engine)]
     found = [
         job_of(variant, kind, case, quick, own_step)
@@ -77,14 +86,6 @@ def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
         words = f"none of --engines is built for it: {', '.join(options.engines)}"
         raise BadInputError(f"--scene is {options.scene!r}; {words}")
     return found
-
-
-def block_cases(quick: bool) -> list[tuple[str, Case]]:
-    """Return the cases and their sets: "typical", and in full "near overturning" too."""
-    chosen = [(kind, case) for kind, cases in chosen_cases(True).items() for case in cases]
-    if quick:
-        return [(k, c) for k, c in chosen if k == "typical" and c.aspect in (2, 4)]
-    return chosen
 
 
 def frame_cases(quick: bool) -> list[tuple[str, RandomCase]]:

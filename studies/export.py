@@ -3,7 +3,6 @@
 import inspect
 import math
 from contextlib import ExitStack
-from dataclasses import replace
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -95,10 +94,6 @@ def command(
         print("slips to expect: {} m; exact {} m".format(*slips))
     else:
         print(f"largest rotation to expect: {found:.12g} of the critical one; exact {exact:.12g}")
-    if engine == name:
-        best = use.engine.use(replace(scene, preset=None)).preset.name
-        others = "" if best == preset else f"; in other commands {engine} is {engine}:{best}"
-        print(f"preset: {preset}, in equal steps{others}")
     return 0
 
 

@@ -27,7 +27,6 @@ from studies.sources.registry import Source, core_sources, resolve
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FRAME = RockingFrame(width=0.5, height=1.5, load=2.0)
 PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
 """Amplitude [g] and circular frequency [rad/s] of full sines."""
 RIDE = SinePulse(amplitude=1.0, omega=2.0 * math.pi, half_cycles=4)
@@ -281,13 +280,12 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
 
 
 def figures(tables: Tables) -> Mapping[str, Figure]:
-    """Draw a frame and a slide, errors against run times, and what floors carry."""
-    from studies.drawing.block import draw_scene
+    """Draw errors against run times, and what floors carry."""
     from studies.drawing.scenes import draw_floors, draw_times
 
     frames = _engines_in(tables["frame-summary"]).rename(columns={"ms_a_frame": "ms"})
     slides = _engines_in(tables["slide-summary"]).rename(columns={"ms_a_slide": "ms"})
-    drawn = {"frame-scene": draw_scene(FRAME, 0.12), "slide-scene": draw_scene(_flat(0.2), 0.3)}
+    drawn: dict[str, Figure] = {}
     if len(frames):
         along = "error of the largest rotation, relative  [–]"
         drawn["frame-time"] = draw_times(frames, "Rocking frames", along)
@@ -323,10 +321,6 @@ says so. Ten minutes.""",
     figures=figures,
     needed=lambda rows: [row for row in rows if row["reason"] != Reason.UNAVAILABLE.name],
     captions={
-        "frame-scene": "A rocking frame: two columns that lean to the right about their right "
-        "corners, and on their tops a beam that stays level; dashed, where they stand at rest.",
-        "slide-scene": "A sliding block on its base, to the right of where it began, which is "
-        "dashed; it stays flat, and only friction holds it.",
         "frame-time": "For each engine and preset a line from the median to the largest error of a "
         "frame's peak, at the run time of a case; beside the name the number of wrong outcomes.",
         "slide-time": "For each engine and preset the median and the largest error of a slip, at "

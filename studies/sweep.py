@@ -17,7 +17,7 @@ from studies.kit.options import EffortOptions
 from studies.kit.say import capital, out_of, part
 from studies.kit.study import Study, Tables
 from studies.measures.claims import Finding, claim, table_of
-from studies.measures.differences import summarize, with_reference, worst_cases
+from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.wrongness import KINDS
 from studies.sources.registry import core_sources
@@ -117,11 +117,10 @@ def finding(tables: Tables) -> str:
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
-    """Return a line for each source, the case where it errs most, and the paper's conclusions."""
+    """Return a line for each source, and the paper's conclusions."""
     columns = ["source", "cases", "agree", *KINDS, "median_error", "p90_error", "max_error"]
     return {
         "All figures": over_all(tables["summary"])[[*columns, "wall_s"]],
-        "The case where each source errs most": worst_cases(with_reference(tables["sweep"])),
         "The paper's conclusions": tables["findings"][["holds", "statement", "source"]],
     }
 

@@ -6,7 +6,6 @@ followed down to the edge. Under a long record overturning begins in slivers, so
 """
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 from analytic.block import RigidBlock
@@ -15,7 +14,6 @@ from analytic.record import Record
 from analytic.response import Outcome
 from analytic.simulate import simulate
 from analytic.start import strongest
-from studies.kit.store import usable_cores
 
 APART = 0.01
 """Relative distance of two factors."""
@@ -23,8 +21,6 @@ MOST_ONSETS = 100.0
 """Over the onset: the largest factor tried."""
 WIDTH = 1e-6
 """Relative width to which the margin is known."""
-AT_ONCE = 32
-"""Factors that are tried side by side."""
 
 
 class Strength(NamedTuple):
@@ -51,16 +47,12 @@ def strength(block: RigidBlock, motion: Record) -> Strength:
     lifts = math.tan(block.alpha) * block.gravity / strongest(motion)
     count = round(math.log(MOST_ONSETS) / math.log1p(APART))
     factors = [lifts * (1.0 + APART) ** n for n in range(1, count + 1)]
-    found, high = list[bool](), math.inf
-    with ThreadPoolExecutor(usable_cores()) as pool:
-        while not any(found) and len(found) < len(factors):
-            found += pool.map(falls, factors[len(found) : len(found) + AT_ONCE])
-    if True in found:
-        first = found.index(True)
-        low, high = factors[first - 1] if first else lifts, factors[first]
+    found = next((n for n, factor in enumerate(factors) if falls(factor)), None)
+    high = math.inf if found is None else factors[found]
+    if found is not None:
+        low = factors[found - 1] if found else lifts
         while high - low > WIDTH * high:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if falls(middle) else (middle, high)
-    strongest_tried = motion.scaled(high if any(found) else factors[-1])
-    needed = simulate(block, strongest_tried).friction_needed
+    needed = simulate(block, motion.scaled(min(high, factors[-1]))).friction_needed
     return Strength(lifts, high, needed)

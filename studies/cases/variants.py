@@ -1,6 +1,6 @@
 """One factor at a time: from the best setting of an engine, and from its library's defaults."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -73,17 +73,12 @@ def variants(engine: str) -> Iterator[Variant]:
                     yield replace(plain[name], factor=factor.name, level=item.name, **varied)
 
 
-def preset_values(engine: str, preset: str, names: Sequence[str]) -> dict[str, Any]:
-    """Return what a preset of an engine sets the named fields of its settings to."""
-    chosen = ENGINES[engine].preset(preset).settings
-    return {name: getattr(chosen, name) for name in names}
-
-
 def _exchanged(plain: Variant, factor: Factor) -> Iterator[Variant]:
     """Yield one of the two presets with the other's values of a factor, where these differ."""
     naive = plain.preset == DEFAULT
-    wanted = preset_values(plain.engine, BEST if naive else DEFAULT, factor.settings)
-    own = preset_values(plain.engine, plain.preset, factor.settings)
+    chosen = [ENGINES[plain.engine].preset(name).settings for name in (DEFAULT, BEST)]
+    default, best = ({name: getattr(of, name) for name in factor.settings} for of in chosen)
+    own, wanted = (default, best) if naive else (best, default)
     if wanted != own and (naive or factor.by_default):
         level, trap = AS_BEST if naive else BY_DEFAULT, factor.traps.get(plain.preset, "")
         yield replace(plain, factor=factor.name, level=level, settings=wanted, trap=trap)

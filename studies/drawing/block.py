@@ -1,4 +1,4 @@
-"""Blocks as outlines: a scene, and the histories of the front page."""
+"""Blocks as outlines, and the picture of the front page."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
@@ -17,9 +16,7 @@ from engines.scene import System, layout_of
 from studies.drawing.styles import full_name, style_of
 from studies.kit.say import power
 
-INK, SOFT, BLOCK, GROUND, GHOST = "#1b1b1b", "#666666", "#cfe0ee", "#d9d9d4", "#c9c9c9"
-WHOLE: dict[str, Any] = {"facecolor": BLOCK, "edgecolor": INK, "linewidth": 1.8}
-DASHED: dict[str, Any] = {"fill": False, "linestyle": (0, (4, 3)), "edgecolor": SOFT}
+INK, SOFT, GROUND, GHOST = "#1b1b1b", "#666666", "#d9d9d4", "#c9c9c9"
 MAGNIFIED = 2.5
 """How many times their size the rotations of the outlines are drawn."""
 
@@ -39,33 +36,6 @@ def outlines(system: System, at: float) -> FloatArray:
     return np.array(corners)
 
 
-def draw_scene(system: System, at: float) -> Figure:
-    """Draw the bodies of a system where they are, and dashed where they are at rest."""
-    rest, moved = outlines(system, 0.0), outlines(system, at)
-    every = np.concatenate((rest, moved))
-    (left, _), (right, top) = every.min(axis=(0, 1)), every.max(axis=(0, 1))
-    spare = 0.12 * max(right - left, top)
-    across, high = right - left + 2.0 * spare, top + 2.0 * spare
-    inch = min(4.4 / across, 3.4 / high)
-    drawing = Figure(figsize=(across * inch, 0.3 + high * inch), layout="constrained")
-    axes = drawing.subplots()
-    axes.set(xlim=(left - spare, right + spare), ylim=(-spare, top + spare))
-    _set_the_stage(axes, 0.5 * spare)
-    for corners in moved:
-        axes.add_patch(Polygon(corners, **WHOLE))
-    for corners in rest:
-        axes.add_patch(Polygon(corners, **DASHED))
-    return drawing
-
-
-def _set_the_stage(axes: Axes, ground: float) -> None:
-    """Leave out the frame of axes that have limits, and lay ground of some thickness along them."""
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    left, right = axes.get_xlim()
-    axes.add_patch(Rectangle((left, -ground), right - left, ground, color=GROUND, linewidth=0))
-
-
 def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> Figure:
     """Draw the outlines at the exact solution's largest rotation, above all histories.
 
@@ -79,8 +49,9 @@ def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> 
     others = lines[lines["source"] != "exact"].to_dict("records")
     for axes, line in zip(upper.subplots(1, len(others), sharey=True), others, strict=True):
         source, colour = line["source"], style_of(line["source"]).colour
-        axes.set(xlim=(-1.15, 1.15), ylim=(-0.12, 1.75))
-        _set_the_stage(axes, 0.1)
+        axes.set(xlim=(-1.15, 1.15), ylim=(-0.12, 1.75), aspect="equal")
+        axes.set_axis_off()
+        axes.add_patch(Rectangle((-1.15, -0.1), 2.3, 0.1, color=GROUND, linewidth=0))
         looks: list[tuple[float, dict[str, Any]]] = [
             (at["exact"], {"facecolor": GHOST, "edgecolor": "#8a8a8a", "linewidth": 0.8}),
             (at[source], {"fill": False, "edgecolor": colour, "linewidth": 2.2}),

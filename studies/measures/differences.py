@@ -112,16 +112,6 @@ def sensitivity_of(cases: pd.DataFrame) -> pd.Series[float]:
     return kappas.clip(lower=1.0).clip(lower=cases["sensitivity"])
 
 
-def worst_cases(compared: pd.DataFrame) -> pd.DataFrame:
-    """Return the case in which each source errs most, with its condition numbers."""
-    erring = compared.dropna(subset="error")
-    place = erring["error"].abs().groupby(erring["source"]).idxmax()
-    order = [source for source in compared["source"].unique() if source in place]
-    worst = erring.loc[place.loc[order]]
-    columns = ["source", "figure", "aspect", "width_m", "omega_over_p", "exact_peak", "error"]
-    return worst[[*columns, "kappa", "kappa_eta", "sensitivity"]]
-
-
 def summarize(compared: pd.DataFrame) -> pd.DataFrame:
     """Return one line for each figure and source, and for all figures where there are several."""
     tables = [compared]

@@ -129,8 +129,6 @@ def test_the_command_writes_what_runs_and_does_not_write_over_it(
     assert rocking([*asked, "--out", str(tmp_path / "scene")]) == 0
     output = capsys.readouterr().out
     assert f"to expect: {expected}" in output
-    assert ("preset: fixed" in output) == (engine == "pymunk")
-    assert ("pymunk:landing" in output) == (engine == "pymunk" and "slide" not in options)
     assert run_scripts("pymunk", tmp_path / "scene/block.py").returncode == 0
     refused(capsys, [*asked, "--out", tmp_path / "scene"], "it must be a new or an empty folder")
 
