@@ -11,12 +11,14 @@ from PIL import Image
 
 from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
 from engines import ENGINES, installed_engines
-from studies import overturning, respond, sweep
+from studies import overturning, respond, restitution, scenes, sweep
+from studies.cases.drawn import census
 from studies.cases.paper import Case
 from studies.kit.pictures import save_all
 from studies.kit.run import makers_of
 from studies.kit.store import Store, provenance_of
 from studies.linearizations import errors_on, line
+from studies.measures.halving import factors
 from studies.measures.published import PUBLISHED
 from studies.page.chapters import PARTS
 
@@ -65,6 +67,26 @@ def test_nothing_is_computed_again_in_a_published_folder(name, tmp_path):
         kept = store.kept({job.key: job for job in jobs}, makers_of(jobs, sweep.STUDY.measure))
     assert len(kept) == len(jobs)
     assert part.study is sweep.STUDY
+
+
+FOLLOWING = {
+    "scenes": lambda found: scenes.tabulate(pd.concat([found[name] for name in scenes.LABELS])),
+    "restitution": lambda found: restitution.tabulate(
+        found["restitution"].assign(source="", outcome="", message="")
+    ),
+    "validate": lambda _: {"drawn": census(1, 500)},
+    "estimate": lambda found: {"factors": factors(found["estimates"])},
+}
+"""Folder -> what makes its tables, or some, of those of its rows."""
+
+
+@pytest.mark.parametrize("folder", FOLLOWING)
+def test_published_tables_follow_from_published_rows(folder):
+    (study,) = (part.study for part in PARTS if part.folder == folder)
+    kept = study.read(PUBLISHED / folder)
+    for name, table in FOLLOWING[folder](kept).items():
+        table = table.reset_index(drop=True)
+        pd.testing.assert_frame_equal(table, kept[name], check_dtype=False, rtol=1e-12)
 
 
 def published(name, **options):

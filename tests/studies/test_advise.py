@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from commanding import refused
 from given import BLOCK
 
 from engines import ENGINES
@@ -168,16 +167,3 @@ def test_a_folder_holds_what_is_printed_with_its_figure(mode, tmp_path, capsys):
     kept, mine = (table_in(place / name, name) for place in (PUBLISHED, tmp_path))
     assert list(kept) == list(mine)
     assert [path.name for path in (tmp_path / name).glob("*.png")] == ["advice.png"] * (not mode)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--error", "0"], "--error is '0'; it must be a positive finite number"),
-        (["--error", "0.1", "0.1"], "--error names 0.1 twice"),
-        (["--engine", "havok"], "--engines is 'havok'; it must be among"),
-        (["--symptoms", "--error", "0.1"], "--error is 0.1; it may be given only without --sym"),
-    ],
-)
-def test_refusals(arguments, words, capsys):
-    refused(capsys, ["advise", *arguments], words)

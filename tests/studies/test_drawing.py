@@ -5,7 +5,6 @@ from functools import cache
 from importlib import import_module
 
 import numpy as np
-import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -14,7 +13,6 @@ from engines import ENGINES
 from studies.drawing.labels import Name, around
 from studies.drawing.linearizations import ONSETS
 from studies.drawing.overturning import VERDICTS
-from studies.drawing.precision import engine_in
 from studies.drawing.styles import (
     ENGINE_COLOURS,
     ENGINE_MARKERS,
@@ -23,7 +21,6 @@ from studies.drawing.styles import (
     title_of,
 )
 from studies.kit.pictures import lay_out
-from studies.measures.presets import look_of
 from studies.measures.published import PUBLISHED
 
 # Machado, Oliveira and Fernandes, 2009, table 1, severity 1: linear RGB to those without a cone
@@ -141,17 +138,3 @@ def test_a_redrawn_picture_names_every_engine_and_clips_no_words(study):
                               or box.y1 > height + 1)
         ]  # fmt: skip
         assert clipped == []
-
-
-def test_precision_has_a_panel_for_each_engine_in_which_its_presets_are_named():
-    table = pd.read_csv(PUBLISHED / "precision" / "work-precision.csv")
-    drawing = pictures_of("precision")["precision"]
-    panels = {axes.get_title(): axes for axes in drawing.axes}
-    for name in table["method"].map(lambda method: engine_in(method)[0]).unique():
-        if not name:
-            continue
-        mine = [method for method in table["method"].unique() if engine_in(method)[0] == name]
-        named = [text.get_text() for text in panels[title_of(name)].texts]
-        presets = [engine_in(method)[1] for method in mine]
-        assert {look_of(preset).short for preset in presets if "," not in preset} <= set(named)
-    assert len(drawing.axes) == 1 + sum(title_of(name) in panels for name in ENGINES)

@@ -5,7 +5,7 @@ import shutil
 
 import pandas as pd
 import pytest
-from commanding import PAGES, PROSE, PUBLISHED_PAGES, ROOT, refused
+from commanding import PAGES, PROSE, PUBLISHED_PAGES, ROOT
 
 from engines.declaration import BEST, LEFT_OUT
 from studies.page import facts, readme
@@ -110,7 +110,3 @@ def test_the_first_picture_is_of_the_case_that_it_names():
     assert lines.loc["exact", "peak_ratio"] == pytest.approx(0.3852, abs=5e-5)
     assert lines.loc["housner", "outcome"] == "overturned"
     assert set(lines.index) == set(readme.SOURCES)
-
-
-def test_a_folder_without_tables_is_refused(tmp_path, capsys):
-    refused(capsys, ["readme", "--root", tmp_path], "--root")

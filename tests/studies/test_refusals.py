@@ -1,11 +1,18 @@
 """Whatever cannot be asked is refused at once, in a line that says what is allowed."""
 
+import json
 import shlex
 import time
 
+import numpy as np
+import pandas as pd
 import pytest
 from commanding import BLOCK, CASE, PULSE, refused
 from records import AT2
+
+from analytic.response import Response
+from studies.__main__ import run
+from studies.sources.registry import SOURCES, Effort, Source
 
 REFUSED = """
 # numbers of each kind, and words of a few
@@ -111,6 +118,11 @@ overturning --out DIR --sources exact --aspect 1e4 | --aspect is 10000 | 0.1 to 
 contact --out DIR --engines mujoco mujoco | twice
 contact --out DIR --scene frames | --scene | frames | block
 contact --out DIR --scene frame --engines moreau | --scene | moreau
+scenes --out DIR --sources housner | housner
+advise --error 0 | --error is '0'; it must be a positive finite number
+advise --error 0.1 0.1 | --error names 0.1 twice
+advise --engine havok | --engines is 'havok'; it must be among
+advise --symptoms --error 0.1 | --error is 0.1; it may be given only without --sym
 contact --out DIR --quickly | --quickly
 restitution --out DIR --engines moreau | moreau | pybullet, mujoco
 restitution --out DIR --engines drake | drake | no coefficient
@@ -127,6 +139,9 @@ compare CASE --plot a.txt | --plot is 'a.txt' | .png
 compare CASE --plot /nowhere/a.png | --plot is '/nowhere/a.png' | written
 sweep --out /dev/null/results | --out is '/dev/null/results' | folder
 sweep --out ' ' | --out is empty | given
+sweep --out list.csv | --out is | folder
+sweep --out /proc/x | --out is '/proc/x'
+readme --root . | --root
 report --out /dev/null | --out is '/dev/null' | folder
 animate CASE --out film.avi | --out | .gif
 animate CASE --out nowhere/film.gif | --out | folder
@@ -183,3 +198,53 @@ def test_a_report_is_not_written_among_what_is_not_its_own(name, tmp_path, capsy
 def test_a_report_of_no_known_kind_is_one_line(tmp_path, capsys):
     (tmp_path / "kind.txt").write_bytes(b"\xff\xfe")
     refused(capsys, ["report", "--out", tmp_path])
+
+
+def test_a_failed_row_is_named_and_the_exit_code_is_1(monkeypatch, capsys, tmp_path):
+    def never(block, motion, *, duration, times):
+        return Response.failure("it never converged")
+
+    monkeypatch.setitem(SOURCES, "never", Source("model", never))
+    assert run(["compare", *CASE, "--sources", "exact", "never", "--json"]) == 1
+    output = capsys.readouterr()
+    assert output.err.splitlines() == ["failed: never: it never converged"]
+    assert json.loads(output.out.splitlines()[1])["peak_ratio"] is None
+    assert run(["sweep", "--figure", "6", "--sources", "never", "--out", str(tmp_path)]) == 1
+    errors = capsys.readouterr().err.splitlines()
+    assert "figure 6, aspect 2, width_m 0.5, omega_over_p 0.1" in errors[0]
+    assert (len(errors), errors[-1]) == (11, "failed: 230 more")
+    table = pd.read_csv(tmp_path / "sweep.csv", keep_default_na=False)
+    failed = table.groupby(["outcome", "peak_ratio", "message"]).size().to_dict()
+    assert failed == {("failed", "nan", "it never converged"): 240}
+
+
+BY_NUMBERS = [
+    *(ZeroDivisionError("float division"), OverflowError(34, "too large"), FloatingPointError()),
+    *(MemoryError(), np.linalg.LinAlgError("singular"), ValueError("math domain error")),
+    ValueError("samples[3] is inf; it must be a finite number"),
+]
+BY_MISTAKE = [TypeError("x"), KeyError("x"), AttributeError("x"), ValueError("shapes differ")]
+
+
+@pytest.mark.parametrize("error", [*BY_NUMBERS, *BY_MISTAKE], ids=repr)
+def test_what_arithmetic_raises_is_one_line_and_what_a_mistake_does_is_not(
+    error, monkeypatch, capsys
+):
+    def broken(*_, **__):
+        raise error
+
+    monkeypatch.setattr("studies.compare.command.compare", broken)
+    line = ["compare", *CASE, "--sources", "exact"]
+    if error in BY_MISTAKE:
+        with pytest.raises(type(error)):
+            run(line)
+    else:
+        refused(capsys, line, str(error) or type(error).__name__)
+
+
+def test_accuracy_and_step_reach_only_the_sources_they_are_for():
+    effort = Effort(step=1e-3, accuracy="tight")
+    assert effort.options("exact") == {}
+    assert effort.options("rk4") == {"step": 1e-3}
+    assert effort.options("pybullet:fixed") == {"step": 1e-3}
+    assert effort.options("mujoco") == {"step": 1e-3, "accuracy": "tight"}

@@ -121,16 +121,12 @@ def test_a_line_holds_the_largest_deviations_and_counts_what_broke():
     assert "pymunk keeps" in restitution.finding(tables)
 
 
-def test_the_published_lines_follow_from_the_published_strikes():
+def test_the_second_way_of_each_engine_is_the_better_one():
     tables = STUDY.read(PUBLISHED / "restitution")
-    strikes = tables["restitution"]
-    again = restitution.tabulate(strikes.assign(source="", outcome="", message=""))
-    for name, table in again.items():
-        pd.testing.assert_frame_equal(table, tables[name], check_dtype=False, rtol=1e-12)
     plain, best = (
         tables["corners"].drop_duplicates("engine", keep=end)["off_over_all"].to_numpy()
         for end in ("first", "last")
     )
-    assert (best < plain).all()  # the second way is the better one
+    assert (best < plain).all()
     for part in ("7 of 8", f"{best.max():.2g}"):
         assert part in restitution.finding(tables)

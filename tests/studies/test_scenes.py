@@ -8,10 +8,8 @@ import pytest
 from analytic import simulate
 from analytic.response import Outcome, Reason, Response
 from studies import scenes
-from studies.cases.refusal import BadInputError
 from studies.kit.jobs import unanswered
 from studies.kit.run import run
-from studies.measures.published import PUBLISHED
 from studies.scenes import finding, jobs, measure, tabulate
 
 FRAME_ROW = {
@@ -86,16 +84,3 @@ def test_rows_are_measured_and_a_process_that_ended_is_a_row():
     for job in found:
         row = measure(type(job)(labels=job.labels, case=job.case, source=job.source, lost=lost))
         assert row["outcome"] == Outcome.FAILED.value and row.keys() > unanswered("").keys()
-
-
-def test_the_published_tables_follow_from_their_rows():
-    tables = scenes.STUDY.read(PUBLISHED / "scenes")
-    rows = pd.concat([tables[scene] for scene in scenes.LABELS], ignore_index=True)
-    again = tabulate(rows)
-    for name in ("frame-summary", "slide-summary", "floor-summary"):
-        pd.testing.assert_frame_equal(again[name], tables[name], check_dtype=False)
-
-
-def test_a_model_is_refused():
-    with pytest.raises(BadInputError, match="housner"):
-        jobs(["housner"], True)
