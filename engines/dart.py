@@ -344,7 +344,7 @@ class DartWorld:
 
 def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
     """Return a scene as calls of DART; see `engines.run.export`."""
-    notes, unit = Notes(chained=True), settings.unit
+    notes, unit = Notes(), settings.unit
     world = DartWorld(scene, settings, dt_s, notes.of(imported("dartpy"), "dart"))
     notes.name(world=world.world, drive=world.mover, floor=world.floor, **world.named)
     notes.name(joint=world.joints)

@@ -407,7 +407,7 @@ def one_line(error: BaseException) -> str:
 
 def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
     """Return a scene as calls of Drake; see `engines.run.export`."""
-    notes, count, planar = Notes(chained=True), len(scene.bodies), settings.planar
+    notes, count, planar = Notes(), len(scene.bodies), settings.planar
     world = DrakeWorld(scene, settings, dt_s, notes.of(imported_parts(), "drake"))
     notes.name(
         plant=world.plant, scene_graph=world.graph, properties=world.properties, ground=world.ground

@@ -315,7 +315,7 @@ class NewtonWorld:
 
 def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
     """Return a scene as calls of Newton; see `engines.run.export`."""
-    notes, moving = Notes(chained=True), scene.frame == "world"
+    notes, moving = Notes(), scene.frame == "world"
     newton, warp = (
         notes.of(imported(it), name) for it, name in (("newton", "newton"), ("warp", "wp"))
     )

@@ -329,7 +329,7 @@ class RapierWorld:
 
 def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
     """Return a scene as calls of Rapier; see `engines.run.export`."""
-    notes, unit = Notes(chained=True), settings.unit_of(scene)
+    notes, unit = Notes(), settings.unit_of(scene)
     world = RapierWorld(scene, settings, dt_s, notes.of(imported("rapier3d"), "rapier"))
     notes.name(world=world.world, floor=world.base, **world.named)
     notes.name_bodies(world.bodies)

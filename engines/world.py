@@ -48,16 +48,15 @@ UNLIMITED = Resolution()
 
 
 class ContactPhase(enum.IntEnum):
-    """What a step is for, by which an adapter may choose how firmly a contact holds."""
+    """What a step is for, by which an adapter may choose how firmly a contact holds.
+
+    The block is at rest, turns about a corner, comes near an impact, or goes through it.
+    """
 
     REST = 0
-    """The block is at rest."""
     SWING = 1
-    """The block turns about a corner."""
     APPROACH = 2
-    """One of the shorter steps before an impact."""
     STRIKE = 3
-    """One of the shortest steps through an impact."""
 
 
 class Choice(NamedTuple):
@@ -114,11 +113,13 @@ class Pose(NamedTuple):
 class World(Protocol):
     """A built scene, its bodies where and as fast as `Scene.bodies` says.
 
-    It may have more. Where its base moves, ``lag_m`` is the largest distance [m] of the base, at
-    the end of a step, from where it should have been, and ``base_x_m`` where the base is [m] as the
-    state is read: poses are relative to it. ``drive(runs, lists, most)`` takes up to so many steps
-    as long as the run goes on, in a compiled loop of the functions of `engines.run.look`, and
-    returns how many; it is None where the library is not as it should be for it.
+    It may have more: ``advance(end_s)`` where the engine chooses its own steps, which goes on to a
+    time [s], the base moving as the scene says, and returns the steps taken. Where its base moves,
+    ``lag_m`` is the largest distance [m] of the base, at the end of a step, from where it should
+    have been, and ``base_x_m`` where the base is [m] as the state is read: poses are relative to
+    it. ``drive(runs, lists, most)`` takes up to so many steps as long as the run goes on, in a
+    compiled loop of the functions of `engines.run.look`, and returns how many; it is None where the
+    library is not as it should be for it.
     """
 
     @property
@@ -136,13 +137,6 @@ class World(Protocol):
 
     def close(self) -> None:
         """Release the engine's memory."""
-
-
-class SelfSteppingWorld(World, Protocol):
-    """A world whose engine can choose its own steps, by its own estimate of the error."""
-
-    def advance(self, end_s: float) -> int:
-        """Advance to a time [s], the base moving as the scene says; return the steps taken."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -65,22 +65,14 @@ class _Made:
     line: int
     name: str = ""
     uses: list[int] = field(default_factory=list)
-    argument: bool = True
+    alone: bool = True
 
 
 class Notes:
-    """What is done to a library, as lines of Python.
+    """What is done to a library, as lines of Python, without some arguments by keyword."""
 
-    Parameters
-    ----------
-    without : sequence of str, optional
-        Arguments by keyword that are not written down.
-    chained : bool, optional
-        Whether a call whose object is used once, in the next call, stands before that.
-    """
-
-    def __init__(self, without: Sequence[str] = (), *, chained: bool = False) -> None:
-        self._without, self._chained = without, chained
+    def __init__(self, without: Sequence[str] = ()) -> None:
+        self._without = without
         self._lines: list[tuple[str, Sequence[int]]] = []
         self._made: list[_Made] = []
         self._known: dict[int, Noted] = {}
@@ -145,7 +137,7 @@ class Notes:
         for number, made in reversed([*enumerate(self._made)]):
             once = len(made.uses) == 1 and len(self._lines[made.line][1]) == 1
             between = range(made.line + 1, made.uses[0]) if once else ()
-            if once and made.argument and not made.name and gone.issuperset(between):
+            if once and made.alone and not made.name and gone.issuperset(between):
                 inside.add(number)
                 gone.add(made.line)
         return inside
@@ -162,15 +154,14 @@ class Notes:
             taken.add(names[-1])
         return names
 
-    def said(self, value: Any, *, argument: bool = True) -> str:
+    def said(self, value: Any, *, alone: bool = True) -> str:
         """Return a value as Python; TypeError unless it is plain or was made by what is noted."""
         if isinstance(value, Noted | Constant):
             text = str(value.noted_name)
             for found in TOKEN.finditer(text):
                 made = self._made[int(found[1])]
                 made.uses.append(len(self._lines))
-                alone = argument and (self._chained or text == found[0])
-                made.argument = made.argument and alone
+                made.alone = made.alone and alone
             return text
         if isinstance(value, list):
             return f"[{', '.join(map(self.said, value))}]"
@@ -200,7 +191,7 @@ class Notes:
             f"{key}={self.said(one)}" for key, one in named.items() if key not in self._without
         ]
         arguments = ", ".join([*map(self.said, given), *shown])
-        call = f"{self.said(function, argument=self._chained)}({arguments})"
+        call = f"{self.said(function)}({arguments})"
         known = self._known.get(id(it))
         if it is None or known:
             self._lines += [] if known and name.lower().startswith("get") else [(call, ())]
@@ -251,7 +242,7 @@ class Noted:
 
     def __setattr__(self, name: str, value: Any) -> None:
         notes = self.noted_notes
-        notes.write(f"{notes.said(self, argument=False)}.{name} = {notes.said(value)}")
+        notes.write(f"{notes.said(self, alone=False)}.{name} = {notes.said(value)}")
         setattr(self.noted_it, name, bare(value))
 
     def __getitem__(self, key: Any) -> Any:

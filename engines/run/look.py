@@ -28,16 +28,7 @@ from engines.run.slide import Slide, begin_slide, see_slide
 from engines.run.steps import FIXED, LANDING, Pace, advance, begin_pace, even, pass_to, timetable
 from engines.run.watch import EVENTS_A_LOOK, Row, Watch, begin_watch, see
 from engines.scene import Scene
-from engines.world import (
-    UNLIMITED,
-    Choice,
-    ContactPhase,
-    FloatArray,
-    Moment,
-    Pose,
-    Resolution,
-    Step,
-)
+from engines.world import Choice, ContactPhase, FloatArray, Moment, Pose, Resolution, Step
 
 PACKAGE = Path(__file__).parents[1]
 """The folder of all that is compiled here."""
@@ -140,9 +131,9 @@ class Monitor:
         self,
         scene: Scene,
         dt_s: float,
-        stepping: Stepping = Stepping.LANDING,
-        moment: Moment = Moment.MIDDLE,
-        resolution: Resolution = UNLIMITED,
+        stepping: Stepping,
+        moment: Moment,
+        resolution: Resolution,
     ) -> None:
         rocking = scene.layout.rocking
         pace = begin_pace(scene, dt_s, stepping, moment, resolution)
@@ -246,7 +237,7 @@ def compile_look() -> None:
     """Compile what looks at a run, if that has not been done on this machine."""
     block, pulse = RigidBlock(width=0.5, height=1.5), SinePulse(amplitude=1.0, omega=1.0)
     scene = Scene(system=block, motion=pulse)
-    monitor = Monitor(scene, dt_s=1e-3)
+    monitor = Monitor(scene, 1e-3, Stepping.LANDING, Moment.MIDDLE, Resolution())
     monitor.make_room(1)
     monitor.next([[getattr(body.at, name) for name in Pose._fields] for body in scene.bodies])
 

@@ -4,47 +4,24 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from time import perf_counter
-from typing import cast
+from typing import Any
 
 import numpy as np
 
-from analytic.response import History, Impact, Outcome, Problem, Reason, Response
+from analytic.response import History, Outcome, Problem, Reason, Response
 from engines.declaration import Stepping, Use
 from engines.run import frame
-from engines.run.history import sample
 from engines.run.look import Monitor, pays_to_compile
-from engines.run.slide import DISTANCE, SINCE, STOP, Slide, end_slip, observables_of
-from engines.run.watch import (
-    BEAM_SLIPPED,
-    DIVERGED,
-    HOLD_WIDTHS,
-    IMPACT,
-    KIND,
-    REST,
-    SANK,
-    SLID,
-    SLIPPED,
-    THROWN,
-    UPLIFT,
-    WHEN,
-    Watch,
-    complete,
-)
+from engines.run.slide import slide_response
+from engines.run.watch import problem_of, response_of
 from engines.scene import Scene
-from engines.world import UNLIMITED, FloatArray, Resolution, SelfSteppingWorld, Step, World
+from engines.world import UNLIMITED, FloatArray, Resolution, World
 
 LAG = "floor_lag_m"
 """Observable: how far [m] a base that moves was from where it should have been, at most."""
 
 LOOK_AROUND = 256
 """Steps between two looks at the clock, and at what the engine knows to have gone wrong."""
-
-
-SINK_WIDTHS = 0.05
-"""Of a corner deeper in the base than this part of the width a reader should know."""
-
-PIVOT_SLID = "the pivot slid {:.3g} m along the base"
-BEAM_SLID = "the beam slid {:.3g} m along the columns' tops"
 
 
 class NotAvailableError(Exception):
@@ -125,22 +102,23 @@ def simulate_world(
             if steps >= scene.max_steps:
                 problem = problem or _undecided(f"{steps} steps")
     wall_s = perf_counter() - started
-    first = monitor.runs[0]
-    seen: list[Watch | Slide] = [first.slide, *(run.watch for run in monitor.runs)]
-    problem = _fault(world) or next(filter(None, map(problem_of, seen)), problem)
+    slide = monitor.runs[0].slide
+    watches = [run.watch for run in monitor.runs]
+    seen = [(watch.problem, watch.far, 2.0 * watch.half_width) for watch in watches]
+    found = [problem_of(*each) for each in ((slide.problem, slide.far, slide.width), *seen)]
+    problem = _fault(world) or next(filter(None, found), problem)
     if problem:
         reason, message = problem
         return Response.failure(message, reason=reason, steps=steps, wall_s=wall_s)
-    found, lag = answer_of(scene, monitor), getattr(world, "lag_m", None)
-    lags = {} if lag is None else {LAG: float(lag)}
-    observables = {**found.observables, **lags}
-    return replace(found, steps=steps, wall_s=wall_s, observables=observables)
+    answer, lag = answer_of(scene, monitor), getattr(world, "lag_m", None)
+    observables = answer.observables if lag is None else {**answer.observables, LAG: float(lag)}
+    return replace(answer, steps=steps, wall_s=wall_s, observables=observables)
 
 
 class Stepper:
     """Takes the steps of a run one by one, looking after each; `monitor` chooses them."""
 
-    def __init__(self, monitor: Monitor, world: World, stepping: Stepping) -> None:
+    def __init__(self, monitor: Monitor, world: Any, stepping: Stepping) -> None:
         self._monitor, self._world, self._own = monitor, world, stepping is Stepping.OWN
         monitor.make_room(LOOK_AROUND)
         self._step = monitor.next(world.state())
@@ -151,16 +129,13 @@ class Stepper:
         for _ in range(most):
             if self._step is None or taken >= most:
                 break
-            taken += self._advance(self._step) if self._own else 1
+            more = self._world.advance(self._step.end_s) if self._own else 1
+            if more < 0:
+                raise ValueError(f"the engine says that it took {more} steps")
             if not self._own:
                 self._world.step(self._step)
+            taken += more
             self._step = self._monitor.next(self._world.state())
-        return taken
-
-    def _advance(self, step: Step) -> int:
-        taken: int = cast(SelfSteppingWorld, self._world).advance(step.end_s)
-        if taken < 0:
-            raise ValueError(f"the engine says that it took {taken} steps")
         return taken
 
 
@@ -171,24 +146,6 @@ def _fault(world: World) -> Problem | None:
 
 def _undecided(limit: str) -> Problem:
     return Problem(Reason.UNDECIDED, f"not decided within {limit}")
-
-
-def problem_of(watch: Watch | Slide) -> Problem | None:
-    """Return why the response is no longer that of what was posed, where there is a reason."""
-    if not watch.problem:
-        return None
-    if watch.problem in (SLIPPED, BEAM_SLIPPED):
-        slid = (PIVOT_SLID if watch.problem == SLIPPED else BEAM_SLID).format(watch.far)
-        most = HOLD_WIDTHS * 2.0 * cast(Watch, watch).half_width
-        assumed = f"steps that land on impacts assume that it holds, and allow at most {most:.3g} m"
-        return Problem(Reason.SLID, f"{slid}; {assumed}")
-    words = {
-        DIVERGED: (Reason.DIVERGED, "the engine's state is not finite"),
-        SANK: (Reason.SANK, f"the block sank {watch.far:.3g} m, through the base"),
-        THROWN: (Reason.THROWN, f"the block was thrown {watch.far:.3g} m off the base"),
-        SLID: (Reason.SLID, PIVOT_SLID.format(watch.far)),
-    }
-    return Problem(*words[int(watch.problem)])
 
 
 def answer_of(scene: Scene, monitor: Monitor) -> Response:
@@ -206,43 +163,6 @@ def answer_of(scene: Scene, monitor: Monitor) -> Response:
         for run, its_rows, its_events in zip(runs, rows, events, strict=True)
     ]
     return together(each, frame.observables_of(runs[0].spread, scene.system.alpha))
-
-
-def response_of(watch: Watch, events: FloatArray, history: History | None) -> Response:
-    """Return what was seen of a body; there is room for one more of its events (k, 4)."""
-    complete(watch, events)
-    if watch.overturned:
-        outcome, ratio = Outcome.OVERTURNED, math.inf
-    elif watch.rocked:
-        outcome, ratio = Outcome.ROCKED, float(watch.peak / watch.alpha)
-    else:
-        outcome, ratio = Outcome.AT_REST, 0.0
-    seen = events[: watch.events]
-    uplifts, impacts, rests = (seen[seen[:, KIND] == kind] for kind in (UPLIFT, IMPACT, REST))
-    return Response(
-        outcome=outcome,
-        peak_ratio=ratio,
-        crossed=bool(watch.crossed or watch.overturned),
-        impacts=tuple(Impact(*impact) for impact in impacts[:, WHEN:].tolist()),
-        uplifts=tuple(uplifts[:, WHEN].tolist()),
-        rests=tuple(rests[:, WHEN].tolist()),
-        message=_remark(watch),
-        history=history,
-        slip_m=float(watch.slide),
-        sink_m=float(watch.sink),
-        hop_m=float(watch.highest),
-    )
-
-
-def _remark(watch: Watch) -> str:
-    """Say what a reader should know of a usable response: how deep it stood, how far it slid."""
-    width, said = 2.0 * watch.half_width, []
-    if watch.sunk > width * SINK_WIDTHS:
-        said.append(f"the block sank {watch.sunk:.3g} m into the base")
-    for words, far in ((PIVOT_SLID, watch.slide), (BEAM_SLID, watch.beam_slide)):
-        if far > width * HOLD_WIDTHS and not watch.slides:
-            said.append(words.format(far))
-    return "; ".join(said)
 
 
 def together(responses: Sequence[Response], observables: Mapping[str, float]) -> Response:
@@ -265,19 +185,33 @@ def together(responses: Sequence[Response], observables: Mapping[str, float]) ->
     )
 
 
-def slide_response(slide: Slide, slips: FloatArray, history: History | None) -> Response:
-    """Return what was seen of a box that slides; the last slip counts as far as it got."""
-    end_slip(slide, slips, slide.time, slide.place)
-    slide.way = 0.0
-    seen = slips[: slide.slips]
-    slid = Outcome.SLID if slide.slips else Outcome.AT_REST
-    return Response(
-        outcome=Outcome.OVERTURNED if slide.overturned else slid,
-        peak_ratio=math.inf if slide.overturned else 0.0,
-        slips=tuple(seen[:, DISTANCE].tolist()),
-        slip_times=tuple(map(tuple, seen[:, [SINCE, STOP]].tolist())),
-        slip_m=float(max(abs(seen[:, DISTANCE]), default=0.0)),
-        sink_m=float(slide.depth),
-        history=history,
-        observables=observables_of(slide),
+def sample(rows: FloatArray, times: Sequence[float]) -> History:
+    """Sample a response at those of some times that it reached.
+
+    Over a step, the rotation is a parabola through both ends. Its curvature comes from the step
+    before or the step after, whichever gives less, so that it does not reach across an impact. The
+    rows (n, 4) are a `watch.Row` each: the start, and the ends of all steps.
+    """
+    time, rate_s, theta, rate = rows.T
+    wanted = np.asarray(times, dtype=np.float64)
+    wanted = wanted[wanted <= time[-1]]
+    # rows[0] is the start, so that step i leads from row i - 1 to row i
+    step = np.clip(np.searchsorted(time, wanted), 1, len(time) - 1)
+    bend = _bends(rate_s[1:], rate[1:])[step - 1]
+    since, left = wanted - time[step - 1], time[step] - wanted
+    chord = (theta[step] - theta[step - 1]) / (time[step] - time[step - 1])
+    return History(
+        time=wanted,
+        theta=theta[step - 1] + chord * since - 0.5 * bend * since * left,
+        velocity=rate[step] + bend * (wanted - rate_s[step]),
     )
+
+
+def _bends(rate_s: FloatArray, rate: FloatArray) -> FloatArray:
+    """Angular acceleration [rad/s2] of each step, from its calmer neighbour."""
+    if len(rate) == 1:
+        return np.zeros(1)
+    between = np.diff(rate) / np.diff(rate_s)
+    before = np.concatenate((between[:1], between))
+    after = np.concatenate((between, between[-1:]))
+    return np.where(np.abs(before) < np.abs(after), before, after)

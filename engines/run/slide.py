@@ -4,9 +4,9 @@ See EQUATIONS.md, "The sliding block".
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
+from analytic.response import History, Outcome, Response
 from engines.run.watch import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS, Row, put
 from engines.scene import Scene
 from engines.world import FloatArray, Pose
@@ -135,10 +135,23 @@ def end_slip(slide: Slide, slips: FloatArray, time: float, place: float) -> None
         slide.slips += 1
 
 
-def observables_of(slide: Slide) -> Mapping[str, float]:
-    """Return what was seen beside the slips: lift [m], turn [rad], place [m] at the end."""
-    return {
-        "lift_m": float(slide.lift),
-        "turn_rad": float(slide.turn),
-        "place_m": float(slide.place),
-    }
+def slide_response(slide: Slide, slips: FloatArray, history: History | None) -> Response:
+    """Return what was seen of a box that slides; the last slip counts as far as it got."""
+    end_slip(slide, slips, slide.time, slide.place)
+    slide.way = 0.0
+    seen = slips[: slide.slips]
+    slid = Outcome.SLID if slide.slips else Outcome.AT_REST
+    return Response(
+        outcome=Outcome.OVERTURNED if slide.overturned else slid,
+        peak_ratio=math.inf if slide.overturned else 0.0,
+        slips=tuple(seen[:, DISTANCE].tolist()),
+        slip_times=tuple(map(tuple, seen[:, [SINCE, STOP]].tolist())),
+        slip_m=float(max(abs(seen[:, DISTANCE]), default=0.0)),
+        sink_m=float(slide.depth),
+        history=history,
+        observables={
+            "lift_m": float(slide.lift),
+            "turn_rad": float(slide.turn),
+            "place_m": float(slide.place),
+        },
+    )

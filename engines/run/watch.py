@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.response import History, Impact, Outcome, Problem, Reason, Response
 from engines.scene import Body, Scene
 from engines.world import FloatArray, Moment, Pose, Resolution
 
@@ -71,6 +72,12 @@ HOLD_WIDTHS = 0.01
 impacts assume: with a friction that a scene asks for such a run fails, and all others say so. Where
 it holds it slides by 1.1e-4 at most in the paper's cases."""
 
+SINK_WIDTHS = 0.05
+"""Of a corner deeper in the base than this part of the width a reader should know."""
+
+PIVOT_SLID = "the pivot slid {:.3g} m along the base"
+BEAM_SLID = "the beam slid {:.3g} m along the columns' tops"
+
 PROPPED_PART = 0.5
 """Part of alpha. A block that leans by less, and is neither held nor shaken, turns faster within
 `REST_TIME` than one at rest may."""
@@ -80,7 +87,7 @@ LYING, LYING_PART = 0.5 * math.pi, 0.9
 where it is lies on a soft contact."""
 
 NO_PROBLEM, DIVERGED, SANK, THROWN, SLID, SLIPPED, BEAM_SLIPPED = range(7)
-"""Why the response is no longer that of a rocking block; see `run.problem_of`."""
+"""Why the response is no longer that of a rocking block."""
 
 UPLIFT, IMPACT, REST = 0.0, 1.0, 2.0
 """Kinds of events."""
@@ -486,3 +493,57 @@ def extrapolated(rows: FloatArray, first: int, stop: int, time: float) -> float:
                 weight *= (time - rows[j, RATE_S]) / (rows[i, RATE_S] - rows[j, RATE_S])
         total += weight * rows[i, RATE]
     return total
+
+
+def problem_of(problem: int, far: float, width: float) -> Problem | None:
+    """Return why the response is no longer that of what was posed, where there is a reason."""
+    if problem == NO_PROBLEM:
+        return None
+    if problem in (SLIPPED, BEAM_SLIPPED):
+        slid = (PIVOT_SLID if problem == SLIPPED else BEAM_SLID).format(far)
+        assumed = "steps that land on impacts assume that it holds, and allow at most"
+        return Problem(Reason.SLID, f"{slid}; {assumed} {HOLD_WIDTHS * width:.3g} m")
+    words = {
+        DIVERGED: (Reason.DIVERGED, "the engine's state is not finite"),
+        SANK: (Reason.SANK, f"the block sank {far:.3g} m, through the base"),
+        THROWN: (Reason.THROWN, f"the block was thrown {far:.3g} m off the base"),
+        SLID: (Reason.SLID, PIVOT_SLID.format(far)),
+    }
+    return Problem(*words[int(problem)])
+
+
+def response_of(watch: Watch, events: FloatArray, history: History | None) -> Response:
+    """Return what was seen of a body; there is room for one more of its events (k, 4)."""
+    complete(watch, events)
+    if watch.overturned:
+        outcome, ratio = Outcome.OVERTURNED, math.inf
+    elif watch.rocked:
+        outcome, ratio = Outcome.ROCKED, float(watch.peak / watch.alpha)
+    else:
+        outcome, ratio = Outcome.AT_REST, 0.0
+    seen = events[: watch.events]
+    uplifts, impacts, rests = (seen[seen[:, KIND] == kind] for kind in (UPLIFT, IMPACT, REST))
+    return Response(
+        outcome=outcome,
+        peak_ratio=ratio,
+        crossed=bool(watch.crossed or watch.overturned),
+        impacts=tuple(Impact(*impact) for impact in impacts[:, WHEN:].tolist()),
+        uplifts=tuple(uplifts[:, WHEN].tolist()),
+        rests=tuple(rests[:, WHEN].tolist()),
+        message=_remark(watch),
+        history=history,
+        slip_m=float(watch.slide),
+        sink_m=float(watch.sink),
+        hop_m=float(watch.highest),
+    )
+
+
+def _remark(watch: Watch) -> str:
+    """Say what a reader should know of a usable response: how deep it stood, how far it slid."""
+    width, said = 2.0 * watch.half_width, []
+    if watch.sunk > width * SINK_WIDTHS:
+        said.append(f"the block sank {watch.sunk:.3g} m into the base")
+    for words, far in ((PIVOT_SLID, watch.slide), (BEAM_SLID, watch.beam_slide)):
+        if far > width * HOLD_WIDTHS and not watch.slides:
+            said.append(words.format(far))
+    return "; ".join(said)

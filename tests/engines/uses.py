@@ -10,7 +10,7 @@ from analytic import Outcome, simulate
 from engines import ENGINES, FRAMES, Scene, core_engines
 from engines.declaration import UNTUNED, Stepping
 from engines.run.look import Monitor
-from engines.world import ROUNDINGS
+from engines.world import ROUNDINGS, Moment
 from studies.cases.paper import sweep_cases
 
 SHAKEN = pulse(1.3, 3.0, 2)
@@ -110,7 +110,7 @@ def errors_of_sweep(engine, every, **options):
 def take_a_step(world, posed, engine):
     """Take the first of the steps that a fixed preset takes in a scene; return it."""
     use = HERE[engine].use(replace(posed, preset="fixed"))
-    monitor = Monitor(use.scene, use.dt_s, Stepping.FIXED)
+    monitor = Monitor(use.scene, use.dt_s, Stepping.FIXED, Moment.MIDDLE, use.resolution)
     monitor.make_room(1)
     step = monitor.next(world.state())
     world.step(step)
