@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import islice
-from math import inf
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -170,7 +169,7 @@ def finding(tables: Tables) -> str:
 
 
 def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
-    """Return the lines of each source, and the cases that say most."""
+    """Return the lines of each source, and what was drawn."""
     if "factors" in tables:
         return {"Estimates, errors, and the factors between them": tables["factors"]}
     errors, s = tables["errors"], sensitivity_of(tables["errors"])
@@ -178,7 +177,6 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
         "Errors of the peak where both survive": quantiles(errors),
         f"The same where S < {WELL_CONDITIONED:g}: by how many per cent a peak moves\nfor one of "
         "the pulse, or of the velocity ratio of impacts": quantiles(errors[s < WELL_CONDITIONED]),
-        "The largest errors": worst(errors, 5),
         "Cases that were drawn": tables["drawn"],
     }
 
@@ -192,17 +190,6 @@ def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
         ends = {name: rows["error"].abs().quantile(level) for name, level in levels.items()}
         lines.append({**line, **counted(wrong_in(rows)), **ends})
     return pd.DataFrame(lines)
-
-
-def worst(errors: pd.DataFrame, count: int) -> pd.DataFrame:
-    """Return some cases that each source gets wrong, and then those in which it errs most."""
-    size = errors["error"].abs().where(errors["agrees"], inf)
-    order = errors.assign(size=size).sort_values("size", ascending=False)
-    first = order.groupby("source").head(count).sort_values("source", kind="stable")
-    frame = [name for name in ("columns", "load") if name in order]
-    posed = [*frame, "aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p"]
-    found = ["outcome", "exact_outcome", "exact_peak", "error"]
-    return first[["source", "case", *posed, *found, "kappa", "kappa_eta", "sensitivity"]]
 
 
 def figures(tables: Tables) -> Mapping[str, Figure]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from textwrap import fill, indent
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import pandas as pd
 from cyclopts import Parameter
@@ -161,17 +161,12 @@ def name_of(preset: Preset, value: float) -> str:
     return f"{preset.accuracy_knob[0] if preset.accuracy_knob else 'p dt'} = {value:g}"
 
 
-def preset_of(line: Mapping[Any, Any] | pd.Series[Any]) -> Preset:
-    """Return the preset of a line of a table."""
-    return ENGINES[str(line["engine"])].preset(str(line["preset"]))
-
-
 def write(lines: pd.DataFrame, block: RigidBlock, friction: float | None) -> Iterator[str]:
     """Yield each setting of some lines in the library's words; ValueError of a bad friction."""
     at = 0.8 if friction is None else friction
     found = lines[lines["message"] == ""].drop_duplicates(["engine", "preset", "value"])
     for _, line in found.iterrows():
-        preset, value = preset_of(line), float(line["value"])
+        preset, value = ENGINES[line["engine"]].preset(line["preset"]), float(line["value"])
         here = "" if math.isnan(line["dt_s"]) else f", DT = {line['dt_s']:.6g} s"
         title = f"{ENGINES[line['engine']].title}, {preset.title}"
         options = {"friction": at, "frame": "base", **options_at(preset, value)}
