@@ -183,12 +183,7 @@ def figures(tables: Tables) -> Mapping[str, Figure]:
 STUDY = Study(
     name="score",
     question="What does one engine predict, and did it get worse?",
-    help="""One engine, by ENGINE or ENGINE:PRESET, MODULE:ENGINE or MODULE:build.
-
-The paper's cases with each of its presets, its errors along the step, its
-verdicts on extreme cases, slides and frames. With --against, the exit code is 0 whatever
-failed. A world that lacks a method, turns the wrong way round, or declares another `Moment` than
-the one at which its velocities hold is refused.""",
+    help="The paper's cases, errors along the step, extreme cases, slides and frames.",
     jobs=jobs,
     measure=measure,
     tabulate=tabulate,
@@ -196,10 +191,6 @@ the one at which its velocities hold is refused.""",
     shown=shown,
     figures=figures,
     needed=lambda rows: [row for row in rows if row["part"] == SWEEP],
-    captions={
-        "score": "The engine's presets along their steps, median error against run time.",
-        "extremes": "Extreme cases, a column for each preset: the symbol says how its answer is.",
-    },
 )
 
 
@@ -213,7 +204,10 @@ def command(
     against: Place | None = None,
     running: Running = Running(),  # noqa: B008
 ) -> int:
-    """Score one engine.
+    """Score one engine: the paper's cases, errors along the step, extreme cases, slides and frames.
+
+    A world that lacks a method, turns the wrong way round, or declares another `Moment` than the
+    one at which its velocities hold is refused. With --against, the exit code is 0 whatever failed.
 
     Parameters
     ----------
