@@ -39,8 +39,8 @@ from studies.kit.say import in_columns, one_line, out_of, part
 from studies.kit.store import project_version
 from studies.kit.study import Study, Tables
 from studies.kit.tables import write_text
+from studies.measures.costs import joint
 from studies.measures.differences import summarize, with_reference
-from studies.measures.finer import joint
 from studies.measures.presets import preset_of
 from studies.measures.verdicts import Verdict
 from studies.sources.registry import Source, announce, presets_of, resolve, scene_of

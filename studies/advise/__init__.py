@@ -33,9 +33,8 @@ from studies.kit.scene_options import Height, Width, block_of
 from studies.kit.store import check
 from studies.kit.study import Study, Tables
 from studies.measures import published as known
-from studies.measures.costs import OUTDATED, STEPPED
+from studies.measures.costs import OUTDATED, STEPPED, cheapest_kept
 from studies.measures.differences import WELL_CONDITIONED
-from studies.measures.finer import cheapest_kept
 from studies.measures.presets import look_of, uses_of
 from studies.measures.published import PUBLISHED, TARGETS, options_at
 

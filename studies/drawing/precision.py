@@ -13,8 +13,7 @@ from studies.drawing.facets import error_scale, strip_beyond
 from studies.drawing.labels import Name, around
 from studies.drawing.styles import LOWEST, Style, title_of
 from studies.kit.say import duration
-from studies.measures.costs import EXACT, exact_cost
-from studies.measures.finer import joint
+from studies.measures.costs import EXACT, exact_cost, joint
 from studies.measures.presets import look_of
 
 STYLES = {

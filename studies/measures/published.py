@@ -17,8 +17,8 @@ import pandas as pd
 from engines import ENGINES
 from engines.declaration import Preset
 from studies.cases.paper import sweep_cases
+from studies.measures.costs import joint
 from studies.measures.differences import WELL_CONDITIONED
-from studies.measures.finer import joint
 from studies.measures.presets import uses_of
 from studies.sources.registry import resolve
 

@@ -21,8 +21,15 @@ from studies.cases.paper import HISTORIES, Case, chosen_cases, free_rocking_wind
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import duration, part
 from studies.kit.study import Study, Tables
-from studies.measures.costs import EXACT, best_of, best_of_each, exact_cost, method_title
-from studies.measures.finer import cheapest_below, joint
+from studies.measures.costs import (
+    EXACT,
+    best_of,
+    best_of_each,
+    cheapest_below,
+    exact_cost,
+    joint,
+    method_title,
+)
 from studies.measures.presets import engine_of
 from studies.measures.published import TARGETS
 from studies.precision.methods import PLAIN, known_methods, methods_of

@@ -14,7 +14,7 @@ from studies.__main__ import run
 from studies.advise import find, keeps, why, write
 from studies.advise import symptoms as seen
 from studies.kit.tables import read_table, table_in
-from studies.measures.finer import cheapest_kept
+from studies.measures.costs import cheapest_kept
 from studies.measures.published import (
     PUBLISHED,
     RANDOM,
