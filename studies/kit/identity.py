@@ -10,7 +10,6 @@ import ast
 import hashlib
 import platform
 import re
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib import import_module, metadata
@@ -132,18 +131,6 @@ def changed(then: Maker, now: Maker) -> list[str]:
 
 
 def why(stale: Iterable[tuple[str, Maker, Maker]]) -> str:
-    """Say of rows that are computed again how many there are of each source, and why."""
-    counts = Counter(
-        (source, tuple(_said(name, then, now) for name in changed(then, now)[:3]))
-        for source, then, now in stale
-    )
-    return "; ".join(
-        f"{source}: {count} {'row' if count == 1 else 'rows'} made with {', '.join(reasons)}"
-        for (source, reasons), count in counts.items()
-    )
-
-
-def _said(name: str, then: Maker, now: Maker) -> str:
-    if name in ("analytic", "engines", "studies") or name.startswith("code of"):
-        return f"other code of {name.removeprefix('code of ')}"
-    return f"{name} {then.get(name, 'none')}, not {now.get(name, 'none')}"
+    """Say of rows that are computed again whose they are, and what made them that differs now."""
+    reasons = {source: ", ".join(changed(then, now)[:3]) for source, then, now in stale}
+    return "; ".join(f"{source}: other {names}" for source, names in reasons.items())

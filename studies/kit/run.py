@@ -24,7 +24,7 @@ from studies.kit.identity import Maker, maker_of
 from studies.kit.jobs import Job, Row, ask, unanswered
 from studies.kit.say import say
 from studies.kit.store import Store, labels_of
-from studies.kit.workers import MEMORY_BYTES, Lost, answers, deferring
+from studies.kit.workers import Lost, answers, deferring
 
 FEW = 32
 """Jobs up to which to interpret takes less time than to load what is compiled."""
@@ -89,10 +89,7 @@ def _load(job: Job) -> None:
 def _measured(measure: Measure, job: Job, many: bool) -> Row:
     if many:
         _load(job)
-    row = measure(job)
-    if str(row.get("message", "")).startswith(MemoryError.__name__):
-        row["message"] += f"; a process may allocate {MEMORY_BYTES / 1e9:g} GB"
-    return row
+    return measure(job)
 
 
 def lost_row(measure: Measure, job: Job, response: Response) -> Row:
@@ -182,9 +179,6 @@ def _going_on(store: Store, done: dict[str, Row], count: int) -> Iterator[None]:
         text = f"{kept}; the same command goes on from there"
         if isinstance(stop, KeyboardInterrupt):
             stop.args = (*stop.args[:1], text)
-            raise
-        if isinstance(stop, OSError) and stop.filename:
-            stop.strerror = f"{stop.strerror}; {text}"
             raise
         raise BadInputError(f"{stop}; {text}") from stop
 

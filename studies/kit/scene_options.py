@@ -149,11 +149,9 @@ class Excitation:
             tilt = self.tilt or 0.0
             side = f"{90.0 if self.degrees else 0.5 * math.pi / block.alpha:.6g}"
             unit = "°" if self.degrees else "α"
-            asked = not self.degrees and abs(tilt) < 90.0
-            meant = f"; {tilt:g}°? --tilt {tilt:g} --degrees" if asked else ""
             raise BadInputError(
                 f"--tilt is {tilt:g}; it must lie between -{side} and {side} {unit}, "
-                f"where the side of the block lies on the ground{meant}"
+                "where the side of the block lies on the ground; --degrees takes degrees"
             )
         for name, given, value, least in (
             ("tilt", self.tilt, theta, LEAST_TILT * block.alpha),
@@ -184,8 +182,7 @@ def block_of(width: float, height: float) -> RigidBlock:
     """Return the block of --width and --height [m], or refuse one that was meant in millimetres."""
     for name, size in (("width", width), ("height", height)):
         if size > MOST_M:
-            meant = f"{size:g} m? In metres: --{name} {1e-3 * size:g} for {size:g} mm"
-            raise BadInputError(f"--{name} is {size:g}; it must be at most {MOST_M:g} m; {meant}")
+            raise BadInputError(f"--{name} is {size:g}; it must be at most {MOST_M:g}, in metres")
     with as_bad_input():
         return RigidBlock(width=width, height=height)
 

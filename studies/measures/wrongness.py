@@ -48,13 +48,6 @@ def kinds_of(found: ArrayLike, right: ArrayLike) -> NDArray[np.str_]:
     )
 
 
-def outcomes_of(peaks: ArrayLike) -> NDArray[np.str_]:
-    """Return the outcomes of exact peaks: inf where it overturns, 0 at rest."""
-    peak = np.asarray(peaks, float)
-    known = Outcome.OVERTURNED.value, Outcome.AT_REST.value
-    return np.select([np.isinf(peak), peak == 0.0], known, Outcome.ROCKED.value)
-
-
 def wrong_in(rows: pd.DataFrame) -> pd.Series[Any]:
     """Return the kind of each row that has an outcome and an exact_outcome."""
     return pd.Series(kinds_of(rows["outcome"], rows["exact_outcome"]), rows.index, object)

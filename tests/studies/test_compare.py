@@ -5,7 +5,7 @@ import math
 import re
 
 import pytest
-from commanding import CASE, ROOT, compared, python, refused
+from commanding import CASE, ROOT, compared, python
 from given import BLOCK, PULSE
 
 from analytic import RockingFrame, SinePulse, SlidingBlock, Still, simulate
@@ -240,17 +240,3 @@ def test_the_guide_s_python_runs_as_a_script_of_one_s_own(tmp_path):
     exact, engine = json.loads(line)
     assert exact == pytest.approx(simulate(BLOCK, PULSE).peak_ratio, rel=1e-12)
     assert 0.0 < engine < 1.0
-
-
-def test_a_slip_of_a_unit_is_answered_by_what_works(capsys):
-    """A size in millimetres, and a tilt in degrees."""
-    sized = ["compare", "--width", "500", *CASE[2:], "--sources", "exact"]
-    line = refused(capsys, sized, "--width is 500; it must be at most 200 m")
-    assert run([*sized[:1], *re.search(r"--width \S+ for", line)[0].split()[:2], *sized[3:]]) == 0
-    assert "0.385153" in capsys.readouterr().out
-    tilted = ["compare", *CASE[:4], "--sources", "exact", "--tilt"]
-    line = refused(capsys, [*tilted, "10"], "10°? --tilt 10 --degrees")
-    assert run([*tilted[:-1], *re.search("--tilt 10.*", line)[0].split()]) == 0
-    capsys.readouterr()
-    for given in (["100"], ["91", "--degrees"]):
-        assert "?" not in refused(capsys, [*tilted, *given])

@@ -39,10 +39,10 @@ blocks list.csv --record X.AT2 --scale 2 2 --out DIR | --scale names 2.0 twice
 blocks list.csv --record X.AT2 --scale --out DIR | --scale
 
 # slips of a unit
-compare --width 300 --height 1.5 PULSE | --width is 300; it must be at most 200 m | 0.3 for 300
-export --width 0.5 --height 200.001 PULSE --out DIR --engine dart | --height 0.200001 for 200.001
-animate --width 200.001 --height 1.5 PULSE --out film.gif | --width 0.200001 for 200.001 mm
-advise --width 0.5 --height 300 | --height is 300; it must be at most 200 m | 0.3 for 300 mm
+compare --width 300 --height 1.5 PULSE | --width is 300; it must be at most 200
+export --width 0.5 --height 200.001 PULSE --out DIR --engine dart | --height is 200.001; it must be
+animate --width 200.001 --height 1.5 PULSE --out film.gif | at most 200, in metres
+advise --width 0.5 --height 300 | --height is 300; it must be at most 200
 
 # who is asked
 compare CASE --sources mujoco:best | --sources | 'mujoco:best' | naive
