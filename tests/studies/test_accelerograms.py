@@ -373,19 +373,6 @@ def test_a_named_pipe_is_not_waited_for(tmp_path):
     assert "it must be a file that can be read (it is a named pipe)" in done.stderr
 
 
-@pytest.mark.parametrize(
-    ("path", "words"),
-    [
-        ("/dev/null", "it is a device"),
-        (".", "it is a folder"),
-        ("a" * 300, "File name too long"),
-        ("no.file", "No such file or directory"),
-    ],
-)
-def test_what_is_no_file_is_not_opened(path, words, capsys):
-    refused(capsys, [*IN_G, path], BEGIN, f"it must be a file that can be read ({words})")
-
-
 def test_a_record_of_ten_million_samples_is_refused_at_once(tmp_path, capsys):
     """By what its header says, before its samples are looked at."""
     path = tmp_path / "long.AT2"

@@ -10,6 +10,7 @@ import pytest
 from commanding import BLOCK, CASE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from records import AT2
 
 from studies.__main__ import COMMANDS, run
 from studies.kit import run as runs
@@ -22,11 +23,6 @@ pytestmark = pytest.mark.processes
 
 RECORD = ("--record", "RECORD", "--units", "g", *BLOCK)
 RELEASE = ("--tilt", "0.5", *BLOCK)
-PEER = """PEER
-A
-ACCELERATION TIME SERIES IN UNITS OF G
-NPTS= 5, DT= .1 SEC
-0 .1 .3 .1 0"""
 BEGINNINGS = {
     "compare": [(*begin, "--sources", "exact") for begin in (CASE, RECORD, RELEASE)],
     "blocks": [("CABINETS", "--record", "RECORD", "--units", "g", "--out", "FOLDER")],
@@ -74,7 +70,7 @@ FULL = "nothing is run here"
 def place(tmp_path_factory):
     """A folder with an ordinary record, a named pipe, and nothing that can be computed for long."""
     folder = tmp_path_factory.mktemp("any")
-    (folder / "RECORD").write_text(PEER)
+    (folder / "RECORD").write_text(AT2["series"])
     (folder / "CABINETS").write_text("name,width,height\nA,0.5,1.5\n")
     (folder / "FOLDER").mkdir()
     os.mkfifo(folder / "PIPE")

@@ -1,8 +1,6 @@
 """Figures: who is told from whom, names that do not cover each other, what is left out."""
 
 import itertools
-from functools import cache
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -22,6 +20,7 @@ from studies.drawing.styles import (
 )
 from studies.kit.pictures import lay_out
 from studies.measures.published import PUBLISHED
+from studies.page.chapters import PARTS
 
 # Machado, Oliveira and Fernandes, 2009, table 1, severity 1: linear RGB to those without a cone
 CONES = {
@@ -93,15 +92,6 @@ def test_names_keep_clear_of_each_other_of_lines_and_of_words():
         assert axes.get_window_extent().count_contains(box.get_points()) == 2
 
 
-FOLDERS = {"advise": "advice"}
-
-
-@cache
-def pictures_of(study):
-    study, folder = import_module(f"studies.{study}").STUDY, PUBLISHED / FOLDERS.get(study, study)
-    return study.figures(study.read(folder))
-
-
 def words_of(drawing):
     """Return the words written in a figure as it is laid out, with their boxes."""
     lay_out(drawing)
@@ -122,9 +112,12 @@ def words_of(drawing):
     return [(text.get_text(), text.get_window_extent()) for text in texts]
 
 
-@pytest.mark.parametrize("study", ["precision", "contact", "advise", "validate", "restitution"])
-def test_a_redrawn_picture_names_every_engine_and_clips_no_words(study):
-    for drawing in pictures_of(study).values():
+NAMING = ("precision", "contact", "advice", "validate", "restitution")
+
+
+@pytest.mark.parametrize("part", [part for part in PARTS if part.folder in NAMING])
+def test_a_redrawn_picture_names_every_engine_and_clips_no_words(part):
+    for drawing in part.study.figures(part.study.read(PUBLISHED / part.folder)).values():
         found = words_of(drawing)
         titles = [title_of(name) for name in ENGINES]
         asked = [title for title in titles if any(title in words for words, _ in found)]

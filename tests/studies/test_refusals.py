@@ -79,7 +79,9 @@ compare BLOCK --record X.AT2 --scale 1e308 | --record times --scale 1e+308 | fin
 compare BLOCK --record X.AT2 --pga 1e308 | --record scaled to --pga 1e+308 | finite
 compare BLOCK --record X.AT2 --units ft | --units is 'ft'
 compare BLOCK --record X.AT2 --duration 0.01 | length of the motion, 0.03 s
-compare BLOCK --record /nowhere/at.all | it must be a file that can be read
+compare BLOCK --record /nowhere/at.all | --record is | a file that can be read (No such file
+compare BLOCK --record /dev/null | --record is | a file that can be read (it is a device)
+compare BLOCK --record . | --record is | a file that can be read (it is a folder)
 compare CASE --baseline none | only with --record
 export CASE --out DIR --engine mujoco --record x | it may be given only without --record
 blocks list.csv --record X.AT2 ./X.AT2 --out DIR | --record names 'X.AT2' twice
