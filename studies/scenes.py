@@ -283,16 +283,8 @@ def figures(tables: Tables) -> Mapping[str, Figure]:
     """Draw errors against run times, and what floors carry."""
     from studies.drawing.scenes import draw_floors, draw_times
 
-    frames = _engines_in(tables["frame-summary"]).rename(columns={"ms_a_frame": "ms"})
-    slides = _engines_in(tables["slide-summary"]).rename(columns={"ms_a_slide": "ms"})
-    drawn: dict[str, Figure] = {}
-    if len(frames):
-        along = "error of the largest rotation, relative  [–]"
-        drawn["frame-time"] = draw_times(frames, "Rocking frames", along)
-    if len(slides):
-        size = tables["slide"].groupby("source")["slip_error_m"]
-        slides = slides.join(size.agg(median_error="median", largest_error="max"), on="source")
-        drawn["slide-time"] = draw_times(slides, "Sliding blocks", "error of a slip  [m]")
+    frames = _engines_in(tables["frame-summary"])
+    drawn = {"frame-time": draw_times(frames)} if len(frames) else {}
     floors = tables["floor-summary"]
     return drawn | ({"floor": draw_floors(floors)} if len(floors) else {})
 
@@ -323,8 +315,6 @@ says so. Ten minutes.""",
     captions={
         "frame-time": "For each engine and preset a line from the median to the largest error of a "
         "frame's peak, at the run time of a case; beside the name the number of wrong outcomes.",
-        "slide-time": "For each engine and preset the median and the largest error of a slip, at "
-        "the run time of a case.",
         "floor": "How far a floor carries a block of what it should, for each engine and each way "
         "of moving the floor, when it moves at once and when it moves after a second of rest.",
     },

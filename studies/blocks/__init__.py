@@ -10,7 +10,7 @@ from dataclasses import asdict
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import TYPE_CHECKING, Annotated, NamedTuple, cast
 
 import numpy as np
 import pandas as pd
@@ -18,11 +18,12 @@ from cyclopts import Parameter
 
 from analytic.accelerograms import Units
 from analytic.block import RigidBlock
+from analytic.conditioning import scaled
 from analytic.record import Record
 from analytic.response import Outcome
-from studies.blocks import strength as rules
+from analytic.simulate import simulate
+from analytic.start import strongest
 from studies.blocks.cabinets import Cabinet, read_cabinets
-from studies.blocks.strength import Strength, strength
 from studies.cases.accelerograms import Baseline, baseline_note, read_record
 from studies.cases.paper import free_rocking_window
 from studies.kit import arguments
@@ -37,6 +38,25 @@ from studies.measures.presets import is_engine
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+APART = 0.01
+"""Relative distance of two factors."""
+MOST_ONSETS = 100.0
+"""Over the onset: the largest factor tried."""
+WIDTH = 1e-6
+"""Relative width to which the margin is known."""
+
+
+class Strength(NamedTuple):
+    """Factors on a motion that lift and overturn, the latter inf if none up to MOST_ONSETS does.
+
+    The friction is what the exact solution needs at the factor that overturns.
+    """
+
+    lifts: float
+    margin: float
+    margin_friction: float
+
 
 ALL_SCALES = 0.0
 """Scale of the row that is about all factors on a record: how strong it must be."""
@@ -107,6 +127,35 @@ def measure(job: Job) -> Row:
     row["message"] = "; ".join(filter(None, (row["message"], note)))
     rocks = job.source == "exact" and isinstance(block, RigidBlock)
     return {**row, "friction_needed": response.friction_needed if rocks else math.nan}
+
+
+def strength(block: RigidBlock, motion: Record) -> Strength:
+    """Find by which factors on a motion the exact block overturns; RuntimeError if one fails.
+
+    Outcomes are looked up on a grid of factors, a hundredth apart, and the first that overturns is
+    followed down to the edge. Under a long record overturning begins in slivers, some no wider than
+    1e-5 of the factor: one that lies between two points of the grid is not seen.
+    """
+    solve = scaled(block, motion)
+
+    def falls(factor: float) -> bool:
+        outcome = solve(factor, 1.0)[1]
+        if outcome is Outcome.FAILED:
+            raise RuntimeError(f"no margin: the solution at the factor {factor:g} failed")
+        return outcome is Outcome.OVERTURNED
+
+    lifts = math.tan(block.alpha) * block.gravity / strongest(motion)
+    count = round(math.log(MOST_ONSETS) / math.log1p(APART))
+    factors = [lifts * (1.0 + APART) ** n for n in range(1, count + 1)]
+    found = next((n for n, factor in enumerate(factors) if falls(factor)), None)
+    high = math.inf if found is None else factors[found]
+    if found is not None:
+        low = factors[found - 1] if found else lifts
+        while high - low > WIDTH * high:
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if falls(middle) else (middle, high)
+    needed = simulate(block, motion.scaled(min(high, factors[-1]))).friction_needed
+    return Strength(lifts, high, needed)
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
@@ -257,7 +306,7 @@ def command(
             title: table.to_html(index=False, na_rep="–", float_format="{:.4g}".format)
             for title, table in shown(tables).items()
         },
-        rules=rules,
+        rules={"APART": APART, "WIDTH": WIDTH, "MOST_ONSETS": MOST_ONSETS},
         made=provenance_of(out),
     )
     write_text(out / "blocks.html", page)

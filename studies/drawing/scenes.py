@@ -34,23 +34,28 @@ def draw_floors(lines: pd.DataFrame) -> Figure:
     return figure
 
 
-def draw_times(lines: pd.DataFrame, title: str, along: str) -> Figure:
+def draw_times(lines: pd.DataFrame) -> Figure:
     """Draw for each engine and preset a line from the median to the largest error at its time.
 
-    `along` stands along the axis of errors; wrong outcomes are counted beside a name.
+    Wrong outcomes are counted beside a name.
     """
     figure, (axes,) = sheet((8.0, 4.6))
-    axes.set(xscale="log", yscale="log", xlabel="run time of a case  [ms]", ylabel=along)
+    axes.set(
+        xscale="log",
+        yscale="log",
+        xlabel="run time of a case  [ms]",
+        ylabel="error of the largest rotation, relative  [–]",
+    )
     names = []
     for row in lines.dropna(subset="median_error").to_dict("records"):
         low, high = (max(row[name], LOWEST) for name in ("median_error", "largest_error"))
         colour = look_of(preset_of(row["source"])).colour
-        axes.plot([row["ms"]] * 2, [low, high], color=colour, linewidth=1.5, alpha=0.5)
-        axes.plot(row["ms"], low, "o", color=colour, markersize=6)
+        axes.plot([row["ms_a_frame"]] * 2, [low, high], color=colour, linewidth=1.5, alpha=0.5)
+        axes.plot(row["ms_a_frame"], low, "o", color=colour, markersize=6)
         wrong = f", {row['wrong']:.0f} wrong" if row["wrong"] else ""
-        names.append(Name(title_of(row["source"]) + wrong, row["ms"], low, colour))
+        names.append(Name(title_of(row["source"]) + wrong, row["ms_a_frame"], low, colour))
     axes.grid(alpha=0.25)
     key(figure, preset_dots(map(preset_of, lines["source"])), 4, fontsize=10)
-    axes.set_title(f"{title}: from the median error (dot) to the largest", fontsize=11)
+    axes.set_title("Rocking frames: from the median error (dot) to the largest", fontsize=11)
     around(axes, names)
     return figure

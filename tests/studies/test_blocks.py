@@ -14,7 +14,7 @@ from analytic import Outcome, Record, RigidBlock, simulate
 from analytic.criteria import overturning_velocity
 from studies import blocks
 from studies.__main__ import run
-from studies.blocks.strength import WIDTH, strength
+from studies.blocks import WIDTH, strength
 from studies.kit.tables import read_table
 
 HEAD = "name,width,height,friction\n"
