@@ -40,12 +40,8 @@ def draw_times(lines: pd.DataFrame) -> Figure:
     Wrong outcomes are counted beside a name.
     """
     figure, (axes,) = sheet((8.0, 4.6))
-    axes.set(
-        xscale="log",
-        yscale="log",
-        xlabel="run time of a case  [ms]",
-        ylabel="error of the largest rotation, relative  [–]",
-    )
+    axes.set(xscale="log", yscale="log", xlabel="run time of a case  [ms]")
+    axes.set_ylabel("error of the largest rotation, relative  [–]")
     names = []
     for row in lines.dropna(subset="median_error").to_dict("records"):
         low, high = (max(row[name], LOWEST) for name in ("median_error", "largest_error"))
