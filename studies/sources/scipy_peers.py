@@ -38,7 +38,8 @@ def solve_ivp_response(
     The absolute tolerance is that of a rotation of a thousandth of alpha. The response's steps are
     evaluations of the right-hand side.
     """
-    march = _March(block, motion, method, rtol, start, duration, times)
+    posed = pose(block, motion, "exact", start, duration, times)
+    march = _March(block, method, rtol, posed, duration is None, times is not None)
     began = time.perf_counter()
     with warnings.catch_warnings(record=True) as said:
         # what an integrator has to say belongs to its row
@@ -65,32 +66,24 @@ class _March:
     """One response: the rotation folded to one side, time in units of 1/p, acceleration in g."""
 
     def __init__(
-        self,
-        block: RigidBlock,
-        motion: Motion,
-        method: str,
-        rtol: float,
-        start: tuple[float, float],
-        duration: float | None,
-        times: FloatArray | None,
+        self, block: RigidBlock, method: str, rtol: float, posed: Any, free: bool, recorded: bool
     ) -> None:
         from scipy.integrate import solve_ivp
 
         self.solve_ivp: Any = solve_ivp
         self.method, self.rtol = method, rtol
         self.p, self.alpha = block.p, block.alpha
-        posed = pose(block, motion, "exact", start, duration, times)
         self.law, self.start, self.segments, until, self.times = posed
         self.moving = float(self.segments[-1, 1])
-        self.until = math.inf if duration is None else until
+        self.until = math.inf if free else until
         self.samples = np.zeros((2, self.times.size))
-        self.recorded, self.end = times is not None, self.until
+        self.recorded, self.end = recorded, self.until
         self.impacts: list[Impact] = []
-        self.peak, self.evaluations, self.message = self.start.y, 0, ""
+        self.peak, self.evaluations = self.start.y, 0
 
     def run(self) -> Outcome:
+        self.message = FAILURES[BROKEN].message
         if not np.all(np.isfinite(self.segments)):
-            self.message = FAILURES[BROKEN].message
             return Outcome.FAILED
         side, y, v = self.start
         tau, j = 0.0, int(np.searchsorted(self.segments[:, 1], 0.0, side="right"))
