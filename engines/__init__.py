@@ -34,8 +34,7 @@ It holds
   as its own documentation shows it, each setting with its source) to the best there is, and what
   the studies try of its contact.
 
-The conformance tests (``tests/engines``) run over the registry and take their tolerances from the
-declaration; every study reads it, and none names an engine.
+The conformance tests run over the registry and take their tolerances from the declaration.
 """
 
 from engines.registry import ENGINES, core_engines, installed_engines

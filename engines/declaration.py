@@ -31,19 +31,15 @@ class Citation(NamedTuple):
     where: str
 
 
-BEST, DEFAULT = "fixed", "naive"
+BEST, DEFAULT = BOTH = ("fixed", "naive")
 """The presets from which one factor at a time is varied."""
 
 AS_BEST, BY_DEFAULT = "as in the best", "default"
 """Names of the values that these two take from each other."""
 
-LEFT_OUT = "left out"
-"""Name of the factor of what a preset is helped by: without one of them at a time."""
-
-OWN_STEPS, OWN_STEP = "step", "the library's own"
-"""Factor and level of the defaults at their own step, which elsewhere is the same for all."""
-
-BOTH = (BEST, DEFAULT)
+LEFT_OUT, OWN_STEPS, OWN_STEP = "left out", "step", "the library's own"
+"""Factors of what a preset is helped by, without one of them at a time, and of the defaults at
+their own step, its level; elsewhere the step is the same for all."""
 
 Settings = Mapping[str, Any]
 

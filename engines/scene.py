@@ -8,6 +8,7 @@ import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -295,25 +296,22 @@ class Scene:
             raise ValueError(f"half_cycles is {count!r}; it must be {allowed}")
         if self.frame is not None:
             one_of("frame", self.frame, FRAMES)
-        for name in ("density", "depth", "step", "time_limit_s", "max_steps"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, positive(name, getattr(self, name)))
-        object.__setattr__(self, "start", self._checked_start(self.start))
+        put = partial(object.__setattr__, self)
+        sizes = ("density", "depth", "step", "time_limit_s", "max_steps")
+        for name in (*sizes, "friction", "duration"):
+            if (value := getattr(self, name)) is not None:
+                put(name, positive(name, value) if name in sizes else finite(name, value))
+        put("start", self._checked_start(self.start))
         if self.friction is None:
-            object.__setattr__(self, "friction", getattr(self.system, "friction", None))
-        elif finite("friction", self.friction) < 0.0:
+            put("friction", getattr(self.system, "friction", None))
+        elif self.friction < 0.0:
             raise ValueError(f"friction is {self.friction!r}; it must not be negative")
-        else:
-            object.__setattr__(self, "friction", finite("friction", self.friction))
-        object.__setattr__(self, "max_steps", int(self.max_steps))
-        if self.duration is not None:
-            object.__setattr__(self, "duration", finite("duration", self.duration))
-            if self.duration < (least := self.motion.duration):
-                words = f"it must be at least the motion's {least!r}"
-                raise ValueError(f"duration is {self.duration!r}; {words}")
-        if self.times is not None:
-            object.__setattr__(self, "times", _increasing("times", self.times))
-        object.__setattr__(self, "settings", MappingProxyType(dict(self.settings)))
+        put("max_steps", int(self.max_steps))
+        if self.duration is not None and self.duration < (least := self.motion.duration):
+            words = f"it must be at least the motion's {least!r}"
+            raise ValueError(f"duration is {self.duration!r}; {words}")
+        put("times", _increasing("times", self.times))
+        put("settings", MappingProxyType(dict(self.settings)))
 
     def _checked_start(self, start: Sequence[float]) -> tuple[float, float]:
         try:
@@ -360,7 +358,9 @@ def _moves(motion: Motion) -> bool:
     return bool(motion.segments()[:, accelerating].any())
 
 
-def _increasing(name: str, values: Sequence[float]) -> tuple[float, ...]:
+def _increasing(name: str, values: Sequence[float] | None) -> tuple[float, ...] | None:
+    if values is None:
+        return None
     times = tuple(finite(name, value) for value in values)
     if not times or times[0] < 0.0 or any(b <= a for a, b in itertools.pairwise(times)):
         raise ValueError(f"{name} is {values!r}; they must increase from 0 or later")

@@ -1,30 +1,19 @@
 """A scene written out for somebody who has an engine's library alone.
 
 What is written is what was called: an adapter builds its scene once more with a library whose calls
-are noted, so that a script cannot say anything else than a run does. Its function then names what
-was made, and adds the lines that take a step and read the pose::
+are noted, names what was made, and adds the lines that take a step and read the pose::
 
-    def script(scene, settings, dt_s):
-        notes = Notes()
-        world = PymunkWorld(scene, settings, dt_s, notes.of(imported("pymunk"), "pymunk"))
-        notes.name(space=world.space, floor=world.base)
-        notes.name_bodies(world.bodies)
-        return Script(
-            imports=("import pymunk",),
-            settings=(f"space.step({dt_s!r})", *notes.quoted("iterations", ".friction")),
-            build=notes.lines(),
-            step=("space.gravity = pull_x, pull_z", "space.step(DT)"),
-            pose=("theta, rate = -bodies[number].angle, -bodies[number].angular_velocity",),
-            place="bodies[0].position.x",
-            moment=world.moment,
-        )
+    notes = Notes()
+    world = PymunkWorld(scene, settings, dt_s, notes.of(imported("pymunk"), "pymunk"))
+    notes.name(space=world.space, floor=world.base)
+    notes.name_bodies(world.bodies)
+    return Script(imports=("import pymunk",), build=notes.lines(), ...)
 
-``PymunkWorld`` builds with the library that it is given, or imports it; it neither closes nor steps
-what is noted. A call is written down where it changes something (it returns nothing) or makes an
-object, whose name is that of the function until the adapter gives it another; an object that is
-used once, as an argument of the next call, stands there. A call that returns numbers, words or an
-array is a question, and is not written down, but for ``create...``, ``add...`` and ``load...``,
-whose number stands for what they made. `constant` is a number that a script writes as a formula.
+A call is written down where it changes something (it returns nothing) or makes an object, whose
+name is that of the function until the adapter gives it another; an object that is used once, in the
+next call, stands there. A call that returns numbers, words or an array is a question, and is not
+written down, but for ``create...``, ``add...`` and ``load...``, whose number stands for what they
+made. `constant` is a number that a script writes as a formula.
 """
 
 import itertools

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple, get_type_hints
+from typing import Any, NamedTuple, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -54,8 +54,8 @@ class Run:
 class Lists(NamedTuple):
     """What of a run grows with the motion and with time.
 
-    ground (m + 1, 8), stops (k,) and loads (l, 3) as of `ground` and `steps`; of each body that
-    rocks the rows of a history (bodies, k, 4) and the events (bodies, k, 4) as of `watch`.
+    ground (m + 1, 8), stops (k,) and loads (l, 3) as of `ground` and `steps`; rows and events as of
+    `watch`, (bodies, k, 4) each.
     """
 
     ground: FloatArray
@@ -122,10 +122,7 @@ def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
 
 
 class Monitor:
-    """Looks at a run, in ordinary steps dt_s [s] of an engine whose velocity holds at a moment.
-
-    `runs` and `lists` are what is known, numpy's records where it is looked at by compiled code.
-    """
+    """Looks at a run, in ordinary steps dt_s [s] of an engine whose velocity holds at a moment."""
 
     def __init__(
         self,
@@ -214,23 +211,22 @@ def _roomy(tables: FloatArray, used: int, more: int) -> FloatArray:
     return larger
 
 
-class Patience:
-    """How long this process goes on in Python: to load what was compiled takes as long."""
+LOADING, COMPILING = 20_000, 100_000
+"""Steps in Python that take as long as to load compiled code, and to compile it."""
 
-    LOADING, COMPILING = 20_000, 100_000
-    """Steps in Python that take as long as to load compiled code, and to compile it."""
-
-    left: ClassVar[float | None] = None
+patience: float | None = None
+"""Steps for which this process goes on in Python: as many as take as long."""
 
 
 def pays_to_compile(scene: Scene, dt_s: float) -> bool:
     """Return whether to look by compiled code, which is decided before a run, by its steps."""
+    global patience
     if not scene.compiled or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return False
-    if Patience.left is None:
-        Patience.left = Patience.LOADING + (0 if are_compiled(PACKAGE) else Patience.COMPILING)
-    Patience.left -= max(scene.motion.duration, scene.duration or 0.0) / dt_s
-    return Patience.left < 0.0 or Kernel.cases == math.inf  # there are many cases to come
+    if patience is None:
+        patience = LOADING + (0 if are_compiled(PACKAGE) else COMPILING)
+    patience -= max(scene.motion.duration, scene.duration or 0.0) / dt_s
+    return patience < 0.0 or Kernel.cases == math.inf  # there are many cases to come
 
 
 def compile_look() -> None:

@@ -64,7 +64,7 @@ EACH = [
 
 @pytest.fixture
 def eager(monkeypatch):
-    monkeypatch.setattr(look.Patience, "left", 0.0)
+    monkeypatch.setattr(look, "patience", 0.0)
 
 
 @pytest.mark.parametrize(("engine", "options"), EACH)
