@@ -2,10 +2,9 @@
 
 The library corrects positions by a velocity of at most 1e-3 units of length a second, and nothing
 in Python sets that: a tuned preset counts in hundredths of a millimetre, so that its contacts are
-left where they are. In steps that land a beam slides out of the plane as the base does, or friction
-between two bodies in the plane would have no mass there, and the library would answer by another
-solver; the free corners of what rests on others reach out in the steps of an impact, and are drawn
-in before it, so that none comes early.
+left where they are. In steps that land a beam slides out of the plane as the base does (see
+`aside`), and the free corners of what rests on others reach out in the steps of an impact, and are
+drawn in before it, so that none comes early.
 """
 
 import math
@@ -50,11 +49,8 @@ DETECTORS = {
 }
 """The library's names of its collision detectors -> their classes, which every release has."""
 
-SOLVERS = {
-    "Dantzig": "DantzigBoxedLcpSolver",
-    "NSGS": "NsgsFrictionSolver",
-    "FBF": "FbfFrictionSolver",
-}
+DANTZIG, NSGS, FBF = "DantzigBoxedLcpSolver", "NsgsFrictionSolver", "FbfFrictionSolver"
+SOLVERS = {"Dantzig": DANTZIG, "NSGS": NSGS, "FBF": FBF}
 """Names of solvers of contact forces -> their classes."""
 
 IN_PLANE, IN_SPACE = (1, 0, 2), (3, 5, 1)
@@ -68,51 +64,31 @@ FREE = {ContactPhase.APPROACH: -1.0, ContactPhase.STRIKE: 1.0}
 class DartSettings:
     """Settings of DART, by default its own; None leaves a setting to the library.
 
-    Attributes
-    ----------
-    geometry : str
-        "box", or "corners": small spheres where the corners at the base are.
-    planar : bool
-        Give the block a planar joint, and two corners in the middle plane, instead of a free joint
-        and four corners at the edges.
-    aside : bool
-        Let the base slide out of the plane. Else nothing moves a block in the plane that way, its
-        friction there has no mass, the Dantzig solver fails on it, and the library takes what its
-        other solver makes of the last step's impulses in a few iterations, without a word.
-    friction : float
-        Coefficient between block and base, of which the library takes the smaller; its own is 1.
-    exact_inertia : bool
-        Set the moments of inertia, too: the mass alone leaves them at 1 kg m2.
-    collision : str or None
-        Collision detector, one of `DETECTORS`; by default FCL. By "DART" contacts are known again
-        by where bodies are in memory: where Dantzig's solver fails, answers depend on that.
-    solver : str or None
-        Of contact forces, one of `SOLVERS`; by default Dantzig's, which bounds friction by normal
-        forces that it solves for without it: while a block turns about a corner that bound is up to
-        a third too low.
-    split_impulse : bool or None
-        Correct penetration without giving it a velocity.
-    sleeping : bool or None
-        Whether a block that has hardly moved for half a second is no longer simulated.
-    unit : float
-        Units of length in a metre. The library corrects a penetration by 1 % of it a step, up to
-        1e-3 units/s.
-    corner_radius : float
-        Radius of the corner spheres over the width.
-    margin : float or None
-        Depth over (alpha p dt)^2 H by which the corner about which the block turns is lowered, so
-        that it stays in contact.
-    reflection : bool
-        Give that corner's velocity back to it, by the velocity of the base; not in the steps of an
-        impact and the first one after it.
-    floor : str
-        How a base that moves is moved: by the "velocity" of its joint, or by a "servo" that gives
-        it one, both of which lead it by the library; by "both" its place and its velocity; by
+    geometry: "box", or "corners": small spheres where the corners at the base are.
+    planar: a planar joint, and two corners in the middle plane, instead of a free joint and four
+        corners at the edges.
+    aside: let the base slide out of the plane. Else nothing moves a block in the plane that way,
+        its friction there has no mass, the Dantzig solver fails on it, and the library takes what
+        its other solver makes of the last step's impulses in a few iterations, without a word.
+    friction: the block's and the base's, of which the library takes the smaller; its own is 1.
+    exact_inertia: set the moments of inertia, too: the mass alone leaves them at 1 kg m2.
+    collision: a detector, by default FCL. By "DART" contacts are known again by where bodies are in
+        memory: where Dantzig's solver fails, answers depend on that.
+    solver: of contact forces, by default Dantzig's, which bounds friction by normal forces that it
+        solves for without it: while a block turns about a corner up to a third too low.
+    split_impulse: correct penetration without giving it a velocity.
+    sleeping: whether a block that has hardly moved for half a second is no longer simulated.
+    unit: units of length in a metre. A penetration is corrected by 1 % of it a step, up to 1e-3
+        units/s.
+    corner_radius: over the width.
+    margin: depth over (alpha p dt)^2 H by which the corner about which the block turns is lowered,
+        so that it stays in contact.
+    reflection: give that corner's velocity back to it, by the velocity of the base; not in the
+        steps of an impact and the first one after it.
+    floor: how a base that moves is moved: by the "velocity" of its joint, or by a "servo" that
+        gives it one, both of which lead it by the library; by "both" its place and its velocity; by
         "position" alone.
-    restitution : float or None
-        Coefficient of the block.
-    base_restitution : float
-        That of the base, with which the library multiplies it.
+    restitution, base_restitution: the block's and the base's, which the library multiplies.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -165,7 +141,10 @@ class DartWorld:
         # a body lives as long as its skeleton, which only the world keeps
         made = [self._new_body(scene, number) for number in range(len(scene.bodies))]
         self.joints, self.bodies = [joint for joint, _ in made], [body for _, body in made]
-        self._set_restitution()
+        if settings.restitution is not None:
+            for number, shape in enumerate(self._shapes):  # the product counts
+                coefficient = settings.restitution if number else settings.base_restitution
+                shape.getDynamicsAspect().setRestitutionCoeff(coefficient)
         self._block, self._state = self.bodies[0], np.zeros((len(self.bodies), len(Pose._fields)))
         self._fault = self._read_back(scene) if library is None else ""
 
@@ -225,13 +204,12 @@ class DartWorld:
             ball = self._dart.dynamics.SphereShape(radius * unit)
             for corner in touching_spheres(scene, number, radius, planar=s.planar):
                 place = counted(corner, unit)
-                node = self._attached(block, ball, place)
-                self._shapes.append(node)
-                self._corners.append((node, place))
-        places = (at.x * unit, at.z * unit, at.theta)
+                self._shapes.append(self._attached(block, ball, place))
+                self._corners.append((self._shapes[-1], place))
+        begins = (at.x * unit, at.z * unit, at.theta)
         speeds = (at.velocity_x * unit, at.velocity_z * unit, at.rate)
-        for coordinate, place_, speed in zip(self.coordinates, places, speeds, strict=True):
-            joint.setPosition(coordinate, place_)
+        for coordinate, begin, speed in zip(self.coordinates, begins, speeds, strict=True):
+            joint.setPosition(coordinate, begin)
             joint.setVelocity(coordinate, speed)
         self.world.addSkeleton(skeleton)
         return joint, block
@@ -243,12 +221,6 @@ class DartWorld:
         node.createDynamicsAspect().setFrictionCoeff(float(self._s.friction))  # the smaller counts
         node.setRelativeTranslation(at)
         return node
-
-    def _set_restitution(self) -> None:
-        s = self._s
-        for number, shape in enumerate(self._shapes if s.restitution is not None else ()):
-            coefficient = s.restitution if number else s.base_restitution  # the product counts
-            shape.getDynamicsAspect().setRestitutionCoeff(coefficient)
 
     def step(self, step: Step) -> None:
         """Advance by a step."""
@@ -291,10 +263,7 @@ class DartWorld:
             world.removeSkeleton(world.getSkeleton(number))
 
     def _lower(self, pivot: float, phase: ContactPhase) -> None:
-        """Keep the corners about which bodies turn, or all at rest, in contact.
-
-        Free corners of what rests on others reach out in an impact, and are drawn in before it.
-        """
+        """Keep the corners about which bodies turn, or all at rest, in contact."""
         free = FREE.get(phase, 0.0) if self._together else 0.0
         if (pivot, free) == self._lowered:
             return
@@ -322,41 +291,35 @@ class DartWorld:
         splits = hasattr(solver, "isSplitImpulseEnabled")
         shapes = [self.floor.getShapeNode(0), self._block.getShapeNode(0)]
         top, own = (node.getDynamicsAspect() for node in shapes)
-        masses: dict[str, tuple[float | None, float]] = {}
+        bounce = None if s.restitution is None else s.restitution * s.base_restitution
+        bounces = top.getRestitutionCoeff() * own.getRestitutionCoeff()
+        pairs: dict[str, tuple[Any, Any]] = {
+            "friction": (s.friction, min(top.getFrictionCoeff(), own.getFrictionCoeff())),
+            "restitution": (bounce, bounces),
+            "solver": (SOLVERS.get(s.solver or ""), type(solver.getBoxedLcpSolver()).__name__),
+            "split impulse": (s.split_impulse, splits and solver.isSplitImpulseEnabled()),
+            "sleeping": (s.sleeping, sleeps and world.getDeactivationOptions().mEnabled),
+        }
         for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
             moment = wanted.inertia[1] * self._unit**2 if s.exact_inertia else None
-            masses[f"mass {number}"] = (wanted.mass, found.getMass())
-            masses[f"moment {number}"] = (moment, found.getInertia().getMoment()[1, 1])
-        return disagreement(
-            {
-                **masses,
-                "friction": (s.friction, min(top.getFrictionCoeff(), own.getFrictionCoeff())),
-                "restitution": (
-                    None if s.restitution is None else s.restitution * s.base_restitution,
-                    top.getRestitutionCoeff() * own.getRestitutionCoeff(),
-                ),
-                "solver": (SOLVERS.get(s.solver or ""), type(solver.getBoxedLcpSolver()).__name__),
-                "split impulse": (s.split_impulse, splits and solver.isSplitImpulseEnabled()),
-                "sleeping": (s.sleeping, sleeps and world.getDeactivationOptions().mEnabled),
-            }
-        )
+            pairs[f"mass {number}"] = (wanted.mass, found.getMass())
+            pairs[f"moment {number}"] = (moment, found.getInertia().getMoment()[1, 1])
+        return disagreement(pairs)
 
 
 def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
     """Return a scene as calls of DART; see `engines.run.export`."""
     notes, unit = Notes(), settings.unit
     world = DartWorld(scene, settings, dt_s, notes.of(imported("dartpy"), "dart"))
-    notes.name(world=world.world, drive=world.mover, floor=world.floor, **world.named)
-    notes.name(joint=world.joints)
+    notes.name(world=world.world, drive=world.mover, floor=world.floor, joint=world.joints)
+    notes.name(**world.named)
     notes.name_bodies(world.bodies)
     notes.listed(joints=world.joints)
     floor, (along, _, theta) = settings.floor if scene.frame == "world" else "", world.coordinates
     x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
     led = [f"drive.setCommands((({x} - drive.getPosition(0)) / DT, 0.0, 0.0))"]
     moves = {
-        "": [],
-        "velocity": led,
-        "servo": led,
+        **{"": [], "velocity": led, "servo": led},
         "both": [
             f"drive.setPositions(({x} - DT * {velocity}, 0.0, 0.0))",
             f"drive.setCommands(({velocity}, 0.0, 0.0))",
@@ -392,8 +355,6 @@ TUNED = DartSettings(
     unit=1e5,
     floor="both",
 )
-
-LANDING = replace(TUNED, margin=0.5, reflection=True)
 
 MASSLESS = "friction without mass: the Dantzig solver fails, and PGS answers in its stead"
 UNFINISHED = "an iteration that may end before friction holds: a pivot slides in some cases"
@@ -450,10 +411,7 @@ FACTORS = (
     Factor(
         "geometry",
         ("geometry", "planar", "aside"),
-        (
-            level("4 corners", planar=False, aside=False),
-            level("planar box", geometry="box"),
-        ),
+        (level("4 corners", planar=False, aside=False), level("planar box", geometry="box")),
     ),
     factor(
         "collision",
@@ -476,11 +434,7 @@ FACTORS = (
 """What its contact can be set to."""
 
 NAIVE = Preset(
-    name="naive",
-    settings=DartSettings(),
-    step_s=1e-3,
-    documented=DOCUMENTED,
-    frame="world",
+    name="naive", settings=DartSettings(), step_s=1e-3, documented=DOCUMENTED, frame="world"
 )
 
 ENGINE = Engine(
@@ -495,14 +449,10 @@ ENGINE = Engine(
         NAIVE,
         NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, sleeping=False),
-        Preset(
-            name="fixed",
-            settings=TUNED,
-            step=5e-4,
-        ),
+        Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="landing",
-            settings=LANDING,
+            settings=replace(TUNED, margin=0.5, reflection=True),
             stepping=Stepping.LANDING,
             stacked={"margin": 30.0, "unit": 1e7},
             helped_by={

@@ -1,10 +1,9 @@
 """Drake: settings, presets, and how a scene is built, set, stepped and read back.
 
-A discrete plant has its step from its making, and a solver of velocities for it. A continuous one
-is left to the integrator CENIC, which takes steps as it is told, or chooses its own by halving them
-and looking at the difference. Forces are constant through a step of either; the base's motion is
-therefore told as the mean of its acceleration, step by step or look by look. Where the base moves,
-it is a box on a rail whose drive is told where it should be, and how fast.
+A discrete plant has one step and a solver of velocities. A continuous one is left to the integrator
+CENIC, which takes steps as it is told, or chooses its own by halving them. Forces are constant
+through a step of either: a base at rest gets the mean of the motion's acceleration, and one that
+moves is a box on a rail whose drive is told where it should be, and how fast.
 """
 
 import logging
@@ -49,12 +48,9 @@ MODULES = (
 GIVEN_UP = (RuntimeError, SystemExit)
 """What the library raises; the latter where one of its own conditions does not hold."""
 
-IN_PLANE = (1, 0, 2)
-"""Where x, z and theta stand among the positions of a planar joint; velocities likewise."""
-
-IN_SPACE = (4, 6, 1)
-"""Where x and z stand among the positions of a free body, which begin with a quaternion, and the
-rate among its velocities."""
+IN_PLANE, IN_SPACE = (1, 0, 2), (4, 6, 1)
+"""Where x, z and theta stand among the positions, and velocities, of a planar joint; where x and z
+stand among those of a free body, which begin with a quaternion, and its rate among velocities."""
 
 BACKWARDS = -1.0
 """CENIC of 1.51.1 lets a drive run at its desired velocity with the opposite sign."""
@@ -63,10 +59,8 @@ WITHIN = 8
 """In so many parts of a look the base is told how fast it is, where steps are the engine's own."""
 
 CENIC = "cenic"
-"""The integrator of a continuous plant; the other solvers are those of a discrete one."""
-
 SOLVERS = ("lagged", "similar", "sap", CENIC)
-"""The library's models of contact, by its own names."""
+"""The library's models of contact of a discrete plant, and the integrator of a continuous one."""
 
 PLANE = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
 """Its columns are z, x and y: a planar joint moves along two axes, and turns about the third."""
@@ -74,52 +68,33 @@ PLANE = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
 LONGEST = 10.0
 """No step that CENIC is told is longer than this many ordinary ones."""
 
-GAINS = {"p": 1e12, "d": 1e8}
-"""Of the drive of a base that moves [N/m, N s/m]: nothing yields, and the ratio is an example's."""
-
-SPEED_GAINS = {"p": 0.0, "d": 1e12}
-"""The same where steps differ: how fast the base is does not depend on them, where it is does."""
+GAINS, SPEED_GAINS = {"p": 1e12, "d": 1e8}, {"p": 0.0, "d": 1e12}
+"""Of the drive of a base that moves [N/m, N s/m]: nothing yields, and the ratio is an example's.
+Where steps differ, only how fast the base is does not depend on them."""
 
 ACCURACY = 2e-9
-"""Error of a step over alpha. CENIC is of first order: its steps go by the root of this, and so at
-first does a rotation's error in units of kappa: up to 5e-5 at 1e-8, 3e-5 at 2e-9. There it stays
-with half of that, too, whatever the contact is made of; near overturning kappa is 70."""
+"""Error of a step over alpha. CENIC is of first order: its steps go by the root of this, and so
+does a rotation's error in units of kappa: 5e-5 at 1e-8, 3e-5 at 2e-9, and no less below."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrakeSettings:
     """Settings of Drake, by default its own; None leaves a setting to the library.
 
-    Attributes
-    ----------
-    geometry : str
-        "box", of which the library sees one contact, the deepest, or "corners": small spheres where
-        the corners at the base are.
-    planar : bool
-        Give the block a planar joint, and two corners in the middle plane instead of four at the
-        edges.
-    friction : float
-        Coefficient between block and base.
-    solver : str or None
-        One of `SOLVERS`; by default "lagged".
-    stiffness : float or None
-        Of a contact over m/dt^2, dt being the step, or the time between two looks at an engine that
-        chooses its own steps; the library's own is 1e6 N/m, whatever the mass.
-    relaxation : float or None
-        Time in which "sap" lets a contact relax, over the step.
-    dissipation : float or None
-        Of the other solvers, over 1/(p R), the time over which a contact's speed is reckoned.
-    stiction : float or None
-        Speed over p R at which a contact that sticks may slip.
-    near_rigid : float or None
-        Of "sap": below which part of what a contact's mass alone would give its stiffness is held.
-    corner_radius : float
-        Radius of the corner spheres over the width.
-    accuracy : float or None
-        Of "cenic": the error of a step over alpha, by which it chooses its own; without it, it
-        takes those that it is told.
-    floor : str
-        How a base that moves is moved: by the "drive" of its joint, or by "position" alone.
+    geometry: "box", which touches in one point, its deepest, or "corners": small spheres at those.
+    planar: a planar joint, and two corners in the middle plane instead of four at the edges.
+    solver: one of `SOLVERS`, by default "lagged".
+    stiffness: of a contact over m/dt^2, dt being the step, or the time between two looks at an
+        engine that chooses its own steps; the library's own is 1e6 N/m, whatever the mass.
+    relaxation: time in which "sap" lets a contact relax, over the step.
+    dissipation: of the other solvers, over 1/(p R).
+    stiction: speed over p R at which a contact that sticks may slip.
+    near_rigid: of "sap", below which part of what a contact's mass alone would give its stiffness
+        is held.
+    corner_radius: over the width.
+    accuracy: of "cenic", the error of a step over alpha, by which it chooses its own; without it,
+        it takes those that it is told.
+    floor: how a base that moves is moved: by the "drive" of its joint, or by "position" alone.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -147,6 +122,7 @@ class DrakeWorld:
     ) -> None:
         self._drake: Any = imported_parts() if library is None else library
         self._s, self._dt, self._continuous = settings, dt_s, settings.solver == CENIC
+        self.moment = Moment.MIDDLE if settings.accuracy is None else Moment.END
         self._count, self._time, self._place, self._problem = 0, 0.0, 0.0, ""
         self._gravity, self._moving = scene.system.gravity, scene.frame == "world"
         self._velocity_of = mean_velocity_of(scene.motion.segments())
@@ -278,11 +254,6 @@ class DrakeWorld:
             integrator.set_target_accuracy(aim)
         return integrator
 
-    @property
-    def moment(self) -> Moment:
-        """At which moment of a step the velocity of a pose holds."""
-        return Moment.MIDDLE if self._s.accuracy is None else Moment.END
-
     def step(self, step: Step) -> None:
         """Advance by a step."""
         if self._problem:
@@ -291,44 +262,39 @@ class DrakeWorld:
         if self._moving:
             self._drive(step.base_x, step.base_velocity)
         self._count += 1
-        try:
-            # a discrete plant changes at the beginning of a step: half of one later it has, once
-            end = step.end_s if self._continuous else (self._count - 0.5) * self._dt
-            self.simulator.AdvanceTo(end)
-        except GIVEN_UP as error:
-            self._problem = one_line(error)
+        # a discrete plant changes at the beginning of a step: half of one later it has, once
+        self._go_on(step.end_s if self._continuous else (self._count - 0.5) * self._dt)
         if self._moving:
             self._look_back(step.base_x)
 
+    def _go_on(self, end_s: float) -> None:
+        """Advance to a time [s], or say why the library gave up."""
+        try:
+            self.simulator.AdvanceTo(end_s)
+        except GIVEN_UP as error:
+            self._problem = " ".join(str(error).split())
+
     def advance(self, end_s: float) -> int:
-        """Advance to a time [s] in steps of the engine's own."""
+        """Advance to a time [s] in steps of the engine's own, the base at its mean velocities."""
         if self._problem:
             return 1
         gained = self._velocity_of(end_s, end_s) - self._velocity_of(self._time, self._time)
         pull_x = 0.0 if self._moving else -gained / (end_s - self._time)
         self._field.set_gravity_vector((pull_x, 0.0, -self._gravity))
         before = self._integrator.get_num_steps_taken()
-        try:
+        within = np.linspace(self._time, end_s, WITHIN + 1)[1:-1] if self._moving else ()
+        for end in (*map(float, within), end_s):
+            velocity = self._velocity_of(self._time, end)
+            self._place += velocity * (end - self._time)
             if self._moving:
-                for end in np.linspace(self._time, end_s, WITHIN + 1)[1:-1]:
-                    self._carry(float(end))
-                self._carry(end_s)
-            else:
-                self.simulator.AdvanceTo(end_s)
-        except GIVEN_UP as error:
-            self._problem = one_line(error)
-            return 1
-        self._time = end_s
+                self._drive(self._place, velocity)
+            self._go_on(end)
+            if self._problem:
+                return 1
+            if self._moving:
+                self._look_back(self._place)
+            self._time = end
         return int(self._integrator.get_num_steps_taken() - before)
-
-    def _carry(self, end_s: float) -> None:
-        """Advance to a time [s], the base at its mean velocity."""
-        velocity = self._velocity_of(self._time, end_s)
-        self._place += velocity * (end_s - self._time)
-        self._drive(self._place, velocity)
-        self.simulator.AdvanceTo(end_s)
-        self._look_back(self._place)
-        self._time = end_s
 
     def _drive(self, place: float, velocity: float) -> None:
         """Tell the base's drive where it should be [m], and how fast [m/s]."""
@@ -345,9 +311,8 @@ class DrakeWorld:
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
         found = self.plant.GetPositionsAndVelocities(self.context, self.blocks).tolist()
-        count, base_x = len(self._state), 0.0
-        if self._moving:
-            base_x = self.rail.get_translation(self.context)
+        count = len(self._state)
+        base_x = self.rail.get_translation(self.context) if self._moving else 0.0
         for number, row in enumerate(self._state):
             if self._s.planar:
                 x, z, theta = (found[3 * number + i] for i in IN_PLANE)
@@ -370,24 +335,21 @@ class DrakeWorld:
     def _read_back(self, scene: Scene) -> str:
         s, plant, (body, *_), block = self._s, self.plant, scene.bodies, self.bodies[0]
         inspector = self.graph.model_inspector()
-        found = [
-            inspector.GetProximityProperties(shape).GetProperty("material", "coulomb_friction")
-            for shape in plant.GetCollisionGeometriesForBody(block)
-        ]
+        shape = plant.GetCollisionGeometriesForBody(block)[0]
+        material = inspector.GetProximityProperties(shape)
+        friction = material.GetProperty("material", "coulomb_friction").static_friction()
         inertia = block.CalcSpatialInertiaInBodyFrame(self.context)
         turning = inertia.CalcRotationalInertia().get_moments()
-        problem = disagreement(
-            {
-                "mass": (body.mass, block.get_mass(self.context)),
-                "moment": (body.inertia[1], turning[1]),
-                "friction": (s.friction, found[0].static_friction()),
-                "step": (0.0 if self._continuous else self._dt, plant.time_step()),
-            }
-        )
-        if problem or s.solver in (None, CENIC):
-            return problem
-        taken = plant.get_discrete_contact_approximation().name.removeprefix("k").lower()
-        return "" if taken == s.solver else f"solver was set to {s.solver!r} but reads {taken!r}"
+        pairs: dict[str, tuple[Any, Any]] = {
+            "mass": (body.mass, block.get_mass(self.context)),
+            "moment": (body.inertia[1], turning[1]),
+            "friction": (s.friction, friction),
+            "step": (0.0 if self._continuous else self._dt, plant.time_step()),
+        }
+        if not self._continuous:
+            taken = plant.get_discrete_contact_approximation().name.removeprefix("k").lower()
+            pairs["solver"] = (s.solver, taken)
+        return disagreement(pairs)
 
 
 @cache
@@ -398,11 +360,6 @@ def imported_parts() -> SimpleNamespace:
         names |= vars(imported(f"pydrake.{part}"))
     logging.getLogger("drake").setLevel(logging.ERROR)
     return SimpleNamespace(**names)
-
-
-def one_line(error: BaseException) -> str:
-    """Return what the library says as one line."""
-    return " ".join(str(error).split())
 
 
 def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
@@ -445,18 +402,18 @@ def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
     )
 
 
+CONFIG = "MultibodyPlantConfig, drake 1.51.1"
+BOTH_CONFIGS = "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1"
+LAGGING = "discrete_contact_approximation = 'lagged', stiction_tolerance = 0.0001"
+
 DOCUMENTED = (
-    Citation("step", "time_step = 0.001", "MultibodyPlantConfig, drake 1.51.1"),
-    Citation(
-        "solver",
-        "discrete_contact_approximation = 'lagged', stiction_tolerance = 0.0001",
-        "MultibodyPlantConfig, drake 1.51.1",
-    ),
+    Citation("step", "time_step = 0.001", CONFIG),
+    Citation("solver", LAGGING, CONFIG),
     Citation(
         "contact",
         "contact_model = 'hydroelastic_with_fallback', compliance_type = 'undefined', that is "
         "points; point_stiffness = 1000000, hunt_crossley_dissipation = 50",
-        "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1",
+        BOTH_CONFIGS,
     ),
     Citation(
         "shapes",
@@ -472,7 +429,7 @@ DOCUMENTED = (
         "without effect",
         "penetration_allowance = 0.001, sap_near_rigid_threshold = 1, relaxation_time = 0.1, "
         "contact_surface_representation = 'polygon'",
-        "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1",
+        BOTH_CONFIGS,
     ),
     Citation(
         "floor",
@@ -506,8 +463,6 @@ TUNED = DrakeSettings(
     dissipation=1e3,
     stiction=1e-5,
 )
-
-CONTROLLED = replace(TUNED, stiffness=2.5e3, accuracy=ACCURACY)
 
 LAGGED = "friction goes by the normal force of the last step, which no impact has foreseen"
 DEEPEST = "a box touches a half-space in one point, its deepest"
@@ -568,7 +523,7 @@ ENGINE = Engine(
         Preset(
             name="error-controlled",
             title="steps of its own, by its own estimate of the error",
-            settings=CONTROLLED,
+            settings=replace(TUNED, stiffness=2.5e3, accuracy=ACCURACY),
             stepping=Stepping.OWN,
             accuracy_knob=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 2e-9)),
         ),

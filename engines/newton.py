@@ -43,41 +43,26 @@ UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 """A quaternion, its real part last."""
 
 XPBD = "xpbd"
-"""The solver by positions; the other ones are Kamino's, by impulses."""
-
 SOLVERS = (XPBD, "padmm", "dvi")
+"""The solver by positions, and Kamino's, by impulses."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NewtonSettings:
     """Settings of Newton, by default those of its own example of a belt; None leaves its own.
 
-    Attributes
-    ----------
-    geometry : str
-        "box", or "corners": four small spheres where the corners at the base are.
-    friction : float
-        Coefficient between block and base.
-    solver : str
-        "xpbd", or Kamino with one of its two solvers of dynamics, "padmm" or "dvi".
-    iterations : int or None
-        Of "xpbd", whose own are 2, and "padmm"; "dvi" has none.
-    relaxation : float or None
-        Part of a contact's correction that "xpbd" makes in an iteration; its own is 0.8.
-    weighting : bool or None
-        Whether "xpbd" divides a correction by the number of contacts, by which momentum is lost.
-    baumgarte : float or None
-        Part of a penetration that Kamino corrects in a step, by a velocity; its own is 0.01.
-    depth : float or None
-        Penetration over the width that Kamino leaves as it is; its own is 1e-6 m.
-    tolerance : float or None
-        Of "padmm"; its own is 1e-6.
-    restitution : float or None
-        Coefficient of block and base; "xpbd" heeds it where it is told to, as here.
-    corner_radius : float
-        Radius of the corner spheres over the width.
-    floor : str
-        How a base that moves is moved: by its "velocity", or by "position" alone.
+    geometry: "box", or "corners": four small spheres where the corners at the base are.
+    solver: "xpbd", or Kamino with one of its two solvers of dynamics, "padmm" or "dvi".
+    iterations: of "xpbd", whose own are 2, and "padmm"; "dvi" has none.
+    relaxation: part of a contact's correction that "xpbd" makes in an iteration; its own is 0.8.
+    weighting: whether "xpbd" divides a correction by the number of contacts, by which momentum is
+        lost.
+    baumgarte: part of a penetration that Kamino corrects in a step, by a velocity; its own is 0.01.
+    depth: penetration over the width that Kamino leaves as it is; its own is 1e-6 m.
+    tolerance: of "padmm"; its own is 1e-6.
+    restitution: of block and base; "xpbd" heeds it where it is told to, as here.
+    corner_radius: over the width.
+    floor: how a base that moves is moved: by its "velocity", or by "position" alone.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -98,23 +83,11 @@ class NewtonSettings:
         if self.iterations is not None and self.solver == "dvi":
             raise ValueError(f"iterations are {self.iterations!r}; the solver 'dvi' takes none")
 
-    def of_xpbd(self) -> dict[str, Any]:
-        """Return the arguments of XPBD that are set."""
-        return given(
-            {
-                "iterations": self.iterations,
-                "rigid_contact_relaxation": self.relaxation,
-                "rigid_contact_con_weighting": self.weighting,
-                "enable_restitution": None if self.restitution is None else True,
-            }
-        )
-
 
 class Model(NamedTuple):
     """What takes a step, from `now` over `after`."""
 
     newton: Any
-    warp: Any
     model: Any
     pipeline: Any
     contacts: Any
@@ -166,8 +139,7 @@ def build(newton: Any, warp: Any, scene: Scene, s: NewtonSettings) -> Model:
     pipeline = newton.CollisionPipeline(model, rigid_contact_max=most)
     contacts = pipeline.contacts()
     solver = new_solver(newton, model, s, scene.system.width)
-    now, after = model.state(), model.state()
-    return Model(newton, warp, model, pipeline, contacts, solver, now, after, moving)
+    return Model(newton, model, pipeline, contacts, solver, model.state(), model.state(), moving)
 
 
 def add_body(
@@ -199,7 +171,13 @@ def diagonal(warp: Any, first: float, second: float, third: float) -> Any:
 def new_solver(newton: Any, model: Any, s: NewtonSettings, width: float) -> Any:
     """Return the solver of a model."""
     if s.solver == XPBD:
-        return newton.solvers.SolverXPBD(model, **s.of_xpbd())
+        wanted = {
+            "iterations": s.iterations,
+            "rigid_contact_relaxation": s.relaxation,
+            "rigid_contact_con_weighting": s.weighting,
+            "enable_restitution": None if s.restitution is None else True,
+        }
+        return newton.solvers.SolverXPBD(model, **given(wanted))
     config = newton.solvers.SolverKamino.Config.from_model(model, dynamics_solver=s.solver)
     if s.baumgarte is not None:
         config.constraints.gamma = s.baumgarte
@@ -259,7 +237,7 @@ class NewtonWorld:
             self._recorded = kept or Recorded(scene, settings, dt_s)
             self._recorded.it.solver.reset(self._recorded.it.now)
         self._force, self._place = self._recorded.force, self._recorded.place
-        self._velocity, self._graph = self._recorded.velocity, self._recorded.graph
+        self._velocity = self._recorded.velocity
         for number, body in enumerate(scene.bodies):
             at, half = body.at, 0.5 * body.at.theta
             self._place[number] = (at.x, 0.0, at.z, 0.0, math.sin(half), 0.0, math.cos(half))
@@ -279,7 +257,7 @@ class NewtonWorld:
         if self._moving:
             speed = step.base_velocity if self._s.floor == "velocity" else 0.0
             self._recorded.joint_q[-1], self._recorded.joint_qd[-1] = step.base_x, speed
-        self._warp.capture_launch(self._graph)
+        self._warp.capture_launch(self._recorded.graph)
         if self._moving:
             self.lag_m = max(self.lag_m, abs(float(self._place[-1, 0]) - step.base_x))
 
@@ -316,9 +294,7 @@ class NewtonWorld:
 def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
     """Return a scene as calls of Newton; see `engines.run.export`."""
     notes, moving = Notes(), scene.frame == "world"
-    newton, warp = (
-        notes.of(imported(it), name) for it, name in (("newton", "newton"), ("warp", "wp"))
-    )
+    newton, warp = notes.of(imported("newton"), "newton"), notes.of(imported("warp"), "wp")
     with silence():
         it = build(newton, warp, scene, settings)
     notes.name(model=it.model, pipeline=it.pipeline, contacts=it.contacts)
@@ -428,11 +404,7 @@ FACTORS = (
 """What its contact can be set to."""
 
 NAIVE = Preset(
-    name="naive",
-    settings=NewtonSettings(),
-    step_s=1e-3,
-    documented=DOCUMENTED,
-    frame="world",
+    name="naive", settings=NewtonSettings(), step_s=1e-3, documented=DOCUMENTED, frame="world"
 )
 
 ENGINE = Engine(

@@ -44,7 +44,6 @@ from engines.world import FloatArray, Moment, Pose, Step
 MOST = 255
 """Iterations at most: the library counts them in eight bits."""
 
-
 CORNER, BASE_DEPTH = 1e-3, 1e-2
 """Radius of corner balls and half the depth of the base over the height of the block: contacts are
 looked for from the middle of the base, the deeper that is, the more coarsely."""
@@ -58,45 +57,26 @@ NOTHING = 1e-9
 class PhysxSettings(Counted):
     """Settings of PhysX, by default those of SAPIEN; None leaves a setting to it.
 
-    Attributes
-    ----------
-    geometry : str
-        "box", or "corners": small balls where the corners at the base are.
-    planar : bool
-        Lock what leads out of the plane, and put two corners into the middle plane instead of four
-        at the edges. A box has its four corners either way.
-    friction : float
-        Coefficient between block and base, at rest and sliding; SAPIEN's own is 0.3, with which a
-        block of H/B = 3 slides before it rocks.
-    tgs : bool or None
-        Whether the solver is TGS, which moves bodies in every iteration, or PGS; its own is TGS.
-    iterations, velocity_iterations : int or None
-        Of the solver, with and then without the correction of depths; its own are 10 and 1.
-    bounce_threshold : float or None
-        Velocity [m/s] below which no impact bounces; its own is 2.
-    depenetration : float or None
-        Fastest correction of a depth [m/s]; its own has no limit. A rounding of the depth over a
-        short step is a velocity, too.
-    angular_damping : float or None
-        Part of the angular velocity that is lost in a second; its own is 0.05.
-    sleeping : bool or None
-        Whether a block that has hardly moved for 0.4 s is no longer simulated; its own is on.
-    contact_offset : float or None
-        Gap [units of length] below which a contact holds, half of it on each side; its own is 0.01.
-        A block that is held before it strikes does so in two steps.
-    units : float or None
-        Units of length in the height of the block; None counts in metres.
-    centred : bool
-        Count heights from where the block's centre is at rest, not from the base.
-    reflection : bool
-        Give the sliding velocity of the corner about which the block turns back to it, by the
-        velocity of the base; not in the steps of an impact.
-    floor : str
-        How a base that moves is moved: by a "target" for the end of the step; as a "belt" whose
+    geometry: "box", or "corners": small balls where the corners at the base are.
+    planar: lock what leads out of the plane, and put two corners into the middle plane instead of
+        four at the edges; a box has its four either way.
+    friction, restitution: of both; SAPIEN's own are 0.3 and 0.1.
+    tgs: whether the solver is TGS, which moves bodies in every iteration, or PGS; its own is TGS.
+    iterations, velocity_iterations: with and then without the correction of depths; its own are 10
+        and 1.
+    bounce_threshold: velocity [m/s] below which no impact bounces; its own is 2.
+    depenetration: fastest correction of a depth [m/s]; its own has no limit. A rounding of the
+        depth over a short step is a velocity, too.
+    angular_damping: part of the angular velocity that is lost in a second; its own is 0.05.
+    sleeping: whether a block that has hardly moved for 0.4 s is no longer simulated; on by default.
+    contact_offset: gap [units of length] below which a contact holds, half of it on each side; its
+        own is 0.01. A block that is held before it strikes does so in two steps.
+    units, centred: see `Counted`.
+    reflection: give the sliding velocity of the corner about which the block turns back to it, by
+        the velocity of the base; not in the steps of an impact.
+    floor: how a base that moves is moved: by a "target" for the end of the step; as a "belt" whose
         targets are where it is, set back before by what it goes in a step, since of a far place
         less is told apart; or by "position" alone.
-    restitution : float
-        Coefficient of both; SAPIEN's own is 0.1.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -152,14 +132,12 @@ class PhysxWorld:
         s, unit, physx = self._s, self._unit, self._sapien.physx
         bounce = None if s.bounce_threshold is None else s.bounce_threshold * unit
         sleep = None if s.sleeping in (None, True) else 0.0
+        iterations = {
+            "solver_position_iterations": s.iterations,
+            "solver_velocity_iterations": s.velocity_iterations,
+        }
         scene = given({"bounce_threshold": bounce, "enable_tgs": s.tgs})
-        body = given(
-            {
-                "solver_position_iterations": s.iterations,
-                "solver_velocity_iterations": s.velocity_iterations,
-                "sleep_threshold": sleep,
-            }
-        )
+        body = given({**iterations, "sleep_threshold": sleep})
         shape = given({"contact_offset": s.contact_offset})
         physx.set_scene_config(gravity=(0.0, 0.0, -self._weight * unit), **scene)
         physx.set_body_config(**body)
@@ -254,11 +232,10 @@ class PhysxWorld:
 
     def _lead(self, step: Step) -> None:
         """Let the library lead the base to its place, from where its velocity is as wanted."""
-        place = step.base_x * self._unit if self._way else 0.0
+        place, belt = step.base_x * self._unit if self._way else 0.0, self._way == "belt"
         if self._way == "position":
             self.base.entity.pose = self._at(place)
             return
-        belt = self._way == "belt"
         if belt or self._reflects:
             back = returned(step, self._dt) if self._reflects else 0.0
             slip = self._slip(step.side) if back else 0.0
@@ -358,14 +335,9 @@ TUNED = PhysxSettings(
     restitution=0.0,
 )
 
-LANDING = replace(
-    TUNED,
-    iterations=MOST,
-    velocity_iterations=MOST,
-    contact_offset=None,
-    reflection=True,
-    floor="belt",
-)
+EVERY: dict[str, Any] = {"iterations": MOST, "velocity_iterations": MOST}
+
+LANDING = replace(TUNED, **EVERY, contact_offset=None, reflection=True, floor="belt")
 
 SHAPES = "SAPIEN 3.0.3, sapien/pysapien/physx.pyi"
 TUNING = "Isaac Lab 3.0.0, concepts/solver-tuning/tune_physx.rst"
@@ -375,11 +347,7 @@ DOCUMENTED = (
     Citation(
         "iterations", "10 of position, 1 of velocity, by default", f"{SHAPES}: set_body_config"
     ),
-    Citation(
-        "solver",
-        "enable_tgs = True, the default",
-        f"{SHAPES}: set_scene_config",
-    ),
+    Citation("solver", "enable_tgs = True, the default", f"{SHAPES}: set_scene_config"),
     Citation("bounce_threshold", "2.0, the default", f"{SHAPES}: set_scene_config"),
     Citation("sleeping", "sleep_threshold = 0.005, the default", f"{SHAPES}: set_body_config"),
     Citation("contact_offset", "0.01, the default", f"{SHAPES}: set_shape_config"),
@@ -411,11 +379,7 @@ SMOOTH = "SAPIEN's own friction: the block slides before it rocks"
 
 FACTORS = (
     factor("tgs", level("TGS", trap=STUCK, tgs=True), level("PGS", (DEFAULT,), tgs=False)),
-    Factor(
-        "iterations",
-        ("iterations", "velocity_iterations"),
-        (level("255, 255", iterations=MOST, velocity_iterations=MOST),),
-    ),
+    Factor("iterations", tuple(EVERY), (level("255, 255", **EVERY),)),
     factor("depenetration"),
     factor("contact_offset"),
     factor("angular_damping"),
@@ -472,10 +436,7 @@ ENGINE = Engine(
             settings=LANDING,
             stepping=Stepping.LANDING,
             stacked=None,
-            helped_by={
-                Help.STEPS: None,
-                Help.REFLECTION: {"reflection": False},
-            },
+            helped_by={Help.STEPS: None, Help.REFLECTION: {"reflection": False}},
         ),
     ),
     precision=Precision.SINGLE,

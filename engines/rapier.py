@@ -44,76 +44,46 @@ from engines.settings import check, disagreement, given, one_of, setting
 from engines.world import FloatArray, Moment, Pose, Step
 
 OVERDAMPED = 1e5
-"""Damping ratio of a contact that corrects positions and is firm all the same, in single precision.
-"""
-
+"""Damping ratio of a contact that corrects positions and is firm all the same."""
 
 ALOFT = 1e-2
-"""A block that sleeps while it leans by more than this part of alpha is on one corner.
-
-What sleeps on both leans by what the contact yields: up to 4e-5 of alpha.
-"""
+"""A block that sleeps leaning by more than this part of alpha is on one corner; what sleeps on both
+leans by what the contact yields: up to 4e-5."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RapierSettings(Counted):
     """Settings of Rapier, by default its own; None leaves a setting to the library.
 
-    Attributes
-    ----------
-    geometry : str
-        "box", or "corners": small balls where the corners at the base are.
-    planar : bool
-        Lock the rotations that lead out of the plane, and put two corners into the middle plane
-        instead of four at the edges. A box has its four corners either way.
-    locked_aside : bool
-        Lock the translation out of the plane, too, where `planar` is set. The contact then has no
-        friction, in the plane either.
-    friction : float
-        Coefficient between block and base, their mean; the library's own is 0.5, with which a block
-        of H/B = 2 slides before it rocks.
-    substeps, iterations, stabilization : int or None
-        Of the solver: substeps in a step, iterations in each, and those that take out of the
-        velocities what the correction of positions has put in.
-    sweeps : float or None
-        Iterations over 1/sin^2(alpha), where `iterations` are None.
-    frequency, damping_ratio : float or None
-        Natural frequency [Hz] and damping ratio of the contact; both or neither. The library's are
-        30 and 10, and 60 Hz on what does not move.
-    correction : float or None
-        Ordinary steps in which a contact corrects a position, in place of the two: in a short step
-        it takes out no more than its share, which else would be a velocity made of rounding.
-    recycling : bool or None
-        Whether contacts are taken from the last step where bodies have hardly moved.
-    warm_starting : float or None
-        Part of the last step's impulses from which the solver starts; they are not scaled by the
-        ratio of two steps.
-    coulomb : bool or None
-        Give each contact a friction of its own instead of one to all four.
-    friction_in_bias_pass : bool or None
-        Whether friction is solved, too, where a step corrects depths.
-    sleeping : bool or None
-        Whether a block that has hardly moved for half a second is no longer simulated.
-    units : float or None
-        Units of length in the height of the block; None counts in metres.
-    centred : bool
-        Count heights from where the block's centre is at rest, not from the base.
-    base_depth : float
-        Half the depth of the base over the height of the block. Contacts are looked for from the
-        middle of the base: the deeper that is, the more coarsely.
-    corner_radius : float
-        Radius of the corner balls over the height. On a base that is deep, a ball whose centre is
-        rounded to where the surface is has no normal there, and no contact for a step.
-    reflection : bool
-        Give the sliding velocity of the corner about which the block turns back to it, by the
-        velocity of the base; not in the steps of an impact.
-    floor : str
-        How a base that moves is moved: by a "target" for the end of the step or its "velocity",
+    geometry: "box", or "corners": small balls where the corners at the base are.
+    planar: lock the rotations that lead out of the plane, and put two corners into the middle plane
+        instead of four at the edges; a box has its four either way.
+    locked_aside: lock the translation out of the plane, too. The contact then has no friction.
+    friction, restitution: the block's; the library takes the mean of a pair's.
+    substeps, iterations, stabilization: substeps in a step, iterations in each, and those that take
+        out of the velocities what the correction of positions has put in.
+    sweeps: iterations over 1/sin^2(alpha), where `iterations` are None.
+    frequency, damping_ratio: of the contact [Hz]; the library's are 30 and 10, and 60 Hz on what
+        does not move.
+    correction: ordinary steps in which a contact corrects a position, in place of the two: in a
+        short step it takes out no more than its share, which else would be a velocity made of
+        rounding.
+    recycling: whether contacts are taken from the last step where bodies have hardly moved.
+    warm_starting: part of the last step's impulses from which the solver starts; they are not
+        scaled by the ratio of two steps.
+    coulomb: give each contact a friction of its own instead of one to all four.
+    friction_in_bias_pass: whether friction is solved, too, where a step corrects depths.
+    sleeping: whether a block that has hardly moved for half a second is no longer simulated.
+    units, centred: see `Counted`.
+    base_depth: half the depth of the base over the height of the block. Contacts are looked for
+        from the middle of the base: the deeper that is, the more coarsely.
+    corner_radius: over the height. On a deep base a ball whose centre is rounded to where the
+        surface is has no contact for a step.
+    reflection: give the sliding velocity of the corner about which the block turns back to it, by
+        the velocity of the base; not in the steps of an impact.
+    floor: how a base that moves is moved: by a "target" for the end of the step or its "velocity",
         which the library leads it by; by "both" its place and its velocity; by "position" alone.
-    restitution : float
-        Coefficient of the block.
-    base_restitution : float or None
-        That of the base, the block's by default; the library takes their mean.
+    base_restitution: the block's by default.
     """
 
     geometry: str = setting("box", names=("box", "corners"))
@@ -144,18 +114,6 @@ class RapierSettings(Counted):
     def __post_init__(self) -> None:
         check(self)
 
-    def spring_of(self, dt_s: float) -> tuple[float, float] | None:
-        """Return a contact's frequency [Hz] and damping ratio; None leaves both to the library.
-
-        A spring of frequency f and damping ratio z takes the part dt / (dt + z / (pi f)) of a
-        depth out of it in a step dt.
-        """
-        if self.correction is not None:
-            return OVERDAMPED / (math.pi * self.correction * dt_s), OVERDAMPED
-        if self.frequency is None or self.damping_ratio is None:
-            return None
-        return self.frequency, self.damping_ratio
-
 
 class RapierWorld:
     """Bodies on a kinematic box, whether that moves or not."""
@@ -184,7 +142,7 @@ class RapierWorld:
         self._fault = self._read_back(scene) if library is None else ""
 
     def _set_solver(self, dt_s: float) -> None:
-        s, spring = self._s, self._s.spring_of(dt_s)
+        s = self._s
         settings = {
             "num_solver_iterations": s.substeps,
             "num_internal_pgs_iterations": self._iterations,
@@ -197,7 +155,12 @@ class RapierWorld:
             setattr(self.parameters, name, value)
         if s.coulomb is not None:
             self.parameters.friction_model = self._rapier.FrictionModel.COULOMB
-        if spring is not None:
+        spring = s.frequency, s.damping_ratio
+        if s.correction is not None:
+            # a spring of frequency f and damping ratio z takes the part dt / (dt + z / (pi f)) of a
+            # depth out of it in a step dt
+            spring = OVERDAMPED / (math.pi * s.correction * dt_s), OVERDAMPED
+        if spring[0] is not None:
             soft = self._rapier.SpringCoefficients(*spring)
             self.parameters.contact_softness = self.parameters.static_contact_softness = soft
             self.named["softness"].append(soft)
@@ -253,17 +216,20 @@ class RapierWorld:
         if step.dt_s != self._dt:
             self.parameters.dt = step.dt_s
         self.world.gravity = (step.pull_x * self._unit, 0.0, step.pull_z * self._unit)
-        if self._led:
-            self._lead(step)
+        if self._way == "target":
+            self.base.set_next_kinematic_translation((step.base_x * self._unit, 0.0, -self._sunk))
+        elif self._led:
+            along = step.base_x * self._unit - self._place
+            self.base.linvel = (along / step.dt_s, 0.0, 0.0)
         elif self._driven:
             self._drive(step)
         self.world.step()
         self._dt = step.dt_s
-        if self._way:
-            self._place = step.base_x * self._unit
         if self._led:
             self._place = self.base.translation.x
             self.lag_m = max(self.lag_m, abs(self._place / self._unit - step.base_x))
+        elif self._way:
+            self._place = step.base_x * self._unit
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
@@ -285,14 +251,6 @@ class RapierWorld:
         """Release the engine's memory."""
         self.world.clear()
 
-    def _lead(self, step: Step) -> None:
-        """Let the library lead the base to its place."""
-        x = step.base_x * self._unit
-        if self._way == "target":
-            self.base.set_next_kinematic_translation((x, 0.0, -self._sunk))
-        else:
-            self.base.linvel = ((x - self._place) / step.dt_s, 0.0, 0.0)
-
     def _drive(self, step: Step) -> None:
         """Set the base's place and velocity, by which the pivot is given its own back, too."""
         back = returned(step, self._dt) if self._s.reflection else 0.0
@@ -307,23 +265,15 @@ class RapierWorld:
         self._speed = speed
 
     def _read_back(self, scene: Scene) -> str:
-        colliders = [self.world.colliders[it.colliders[0]] for it in (self.base, self._body)]
-        friction = 0.5 * sum(collider.friction for collider in colliders)
+        base, own = (self.world.colliders[it.colliders[0]] for it in (self.base, self._body))
         pairs = {
-            **{
-                f"mass {number}": (wanted.mass, found.mass)
-                for number, (wanted, found) in enumerate(
-                    zip(scene.bodies, self.bodies, strict=True)
-                )
-            },
-            "friction": (self._s.friction, friction),
-            "restitution": (self._s.restitution, colliders[1].restitution),
-            "iterations": (
-                self._iterations,
-                self.parameters.num_internal_pgs_iterations,
-            ),
+            "friction": (self._s.friction, 0.5 * (base.friction + own.friction)),
+            "restitution": (self._s.restitution, own.restitution),
+            "iterations": (self._iterations, self.parameters.num_internal_pgs_iterations),
             "substeps": (self._s.substeps, self.parameters.num_solver_iterations),
         }
+        for number, body in enumerate(scene.bodies):
+            pairs[f"mass {number}"] = (body.mass, self.bodies[number].mass)
         return disagreement(pairs, Precision.SINGLE.value)
 
 
@@ -382,8 +332,6 @@ TUNED = RapierSettings(
     base_depth=0.1,
     floor="both",
 )
-
-LANDING = replace(TUNED, reflection=True)
 
 RECYCLED = "a contact of an earlier step: the block slides off its pivot"
 FRICTIONLESS = "a contact whose body cannot move aside has no friction at all"
@@ -456,10 +404,7 @@ FACTORS = (
     Factor(
         "iterations",
         ("iterations", "sweeps"),
-        (
-            level("10", BOTH, iterations=10),
-            level("1000", iterations=1000),
-        ),
+        (level("10", BOTH, iterations=10), level("1000", iterations=1000)),
     ),
     factor("warm_starting"),
     factor("coulomb", level("Coulomb", BOTH, coulomb=True), name="friction model"),
@@ -488,9 +433,7 @@ FACTORS = (
         by_default=False,
     ),
     factor(
-        "corner_radius",
-        level("H/1000", corner_radius=1e-3),
-        level("1e-7 H", corner_radius=1e-7),
+        "corner_radius", level("H/1000", corner_radius=1e-3), level("1e-7 H", corner_radius=1e-7)
     ),
     moving_base("both", "target", "velocity", "position"),
 )
@@ -516,22 +459,14 @@ ENGINE = Engine(
     presets=(
         NAIVE,
         NAIVE.at_rest(),
-        NAIVE.recommended(
-            *RECOMMENDED,
-            step_s=1.0 / 120.0,
-            substeps=8,
-            coulomb=True,
-        ),
+        NAIVE.recommended(*RECOMMENDED, step_s=1.0 / 120.0, substeps=8, coulomb=True),
         Preset(name="fixed", settings=TUNED, step=5e-4),
         Preset(
             name="landing",
-            settings=LANDING,
+            settings=replace(TUNED, reflection=True),
             stepping=Stepping.LANDING,
             stacked=None,
-            helped_by={
-                Help.STEPS: None,
-                Help.REFLECTION: {"reflection": False},
-            },
+            helped_by={Help.STEPS: None, Help.REFLECTION: {"reflection": False}},
         ),
     ),
     precision=Precision.SINGLE,
