@@ -16,7 +16,7 @@ from engines.declaration import (
     level,
     moving_base,
 )
-from engines.mujoco.build import LIBRARY_STEP_S, MujocoSettings, MujocoWorld, script
+from engines.mujoco.build import MujocoSettings, MujocoWorld, script
 
 TUNED = MujocoSettings(
     geometry="corners",
@@ -46,14 +46,8 @@ LANDING = replace(
     preload=True,
 )
 
-STACKED: dict[str, Any] = {
-    "friction": 2.0,
-    "impratio": 100.0,
-    "tolerance": 0.0,
-    "soft_surface": 4.0,
-}
-"""Where bodies rest on others: with the block's own contact they part; the softness of the surface
-is over sin(alpha)^2 (`MujocoSettings.fitted`)."""
+STACKED = {"friction": 2.0, "impratio": 100.0, "tolerance": 0.0, "soft_surface": 4.0}
+"""Where bodies rest on others: with the block's own contact they part (`MujocoSettings.fitted`)."""
 
 STEEP = "a pyramid this steep leaves too little normal force"
 ZERO = "one zero makes it the default, 0.02 s 1"
@@ -61,6 +55,7 @@ ORIGINAL: dict[str, Any] = {"damping": None, "sliding_damping": None, "stiffness
 """The direct form of the reference given up."""
 
 REFERENCE, MODELING = "XMLreference.rst of MuJoCo 4.0.0", "modeling.rst of MuJoCo 4.0.0"
+GEOM = f"{REFERENCE}, body/geom"
 
 DOCUMENTED = (
     Citation("step", "timestep 0.002", f"{REFERENCE}, option"),
@@ -69,13 +64,9 @@ DOCUMENTED = (
     Citation("cone", "pyramidal, impratio 1", f"{REFERENCE}, option"),
     Citation("noslip", "noslip_iterations 0", f"{REFERENCE}, option"),
     Citation("sleeping", "sleep disable", f"{REFERENCE}, option/flag"),
-    Citation(
-        "friction", "1 0.005 0.0001, as here, of a pair the larger", f"{REFERENCE}, body/geom"
-    ),
-    Citation(
-        "friction", "condim 3: sliding alone, neither spin nor roll", f"{REFERENCE}, body/geom"
-    ),
-    Citation("margin", "0", f"{REFERENCE}, body/geom"),
+    Citation("friction", "1 0.005 0.0001, as here, of a pair the larger", GEOM),
+    Citation("friction", "condim 3: sliding alone, neither spin nor roll", GEOM),
+    Citation("margin", "0", GEOM),
     Citation(
         "contact", "solref 0.02 1, solimp 0.9 0.95 0.001 0.5 2", f"{MODELING}, Solver parameters"
     ),
@@ -110,10 +101,7 @@ FACTORS = (
     ),
     factor("friction", traps={DEFAULT: STEEP}),
     factor(
-        "solver",
-        level("CG", BOTH, solver="CG"),
-        level("PGS", BOTH, solver="PGS"),
-        by_default=False,
+        "solver", level("CG", BOTH, solver="CG"), level("PGS", BOTH, solver="PGS"), by_default=False
     ),
     factor("tolerance", level("1e-4", tolerance=1e-4), name="solver tolerance"),
     factor("iterations", level("2", iterations=2), name="solver iterations", by_default=False),
@@ -163,11 +151,7 @@ FACTORS = (
 """What its contact can be set to."""
 
 NAIVE = Preset(
-    name="naive",
-    settings=MujocoSettings(),
-    step_s=LIBRARY_STEP_S,
-    documented=DOCUMENTED,
-    frame="world",
+    name="naive", settings=MujocoSettings(), step_s=2e-3, documented=DOCUMENTED, frame="world"
 )
 
 ENGINE = Engine(
@@ -190,12 +174,7 @@ ENGINE = Engine(
             solver="Newton",
             tolerance=1e-10,
         ),
-        Preset(
-            name="fixed",
-            settings=TUNED,
-            step=2.5e-4,
-            stacked=STACKED,
-        ),
+        Preset(name="fixed", settings=TUNED, step=2.5e-4, stacked=STACKED),
         Preset(
             name="landing",
             settings=LANDING,

@@ -27,12 +27,8 @@ from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
 from engines.world import FloatArray, Moment, Pose, Script, Step
 
-LIBRARY_STEP_S = 0.002
-"""The library's own time step [s]."""
-
 NARROWEST_CONE = 0.1
-"""Friction over the root of impratio: what the solver takes for the cone; it errs in a narrower
-one."""
+"""Friction over the root of impratio: the solver's cone; it errs in a narrower one."""
 
 FLOOR_MASSES = 1000.0
 """Mass of a welded base over that of the bodies on it. From ten on it hardly matters; but the
@@ -57,42 +53,30 @@ class MujocoSettings:
     Of a contact (`engines.mujoco.contact`) b and k are given without units, as b dt and k dt^2:
     b dt = 1 takes all velocity out of a contact within one step.
 
-    Attributes
-    ----------
-    geometry : str
-        "box", "corners" (small spheres where the corners at the base are) or "hull" (a convex mesh
-        of the block's eight corners).
-    planar : bool
-        Give the block two slides and a hinge, and two corners in the middle plane, instead of a
-        free joint and four corners at the edges.
-    friction : float
-        Coefficient between block and base.
-    corner_radius, margin, carry : float or None
-        Over the width: radius of the spheres; gap from which on a contact acts; gap within which
-        the corner about which the block turns stays in contact, however long the step.
-    cone, solver, jacobian, tolerance, iterations, impratio, integrator, noslip_iterations
-        Options of the library.
-    diagexact : bool or None
-        Scale each contact's regularization by the inertia that it feels, not by an estimate of it
-        made where the bodies were built.
-    damping, sliding_damping, stiffness : float or None
-        b dt along the contact's normal and along the base, and k dt^2; all or none.
-    impedance : tuple of float or None
-        The five numbers of solimp; needed wherever damping is set.
-    soft_surface : float or None
-        Depth over g dt^2 within which a contact grows from the first of the impedances to the
-        second, in place of their width; it keeps contacts that close together from parting. Of
+    geometry: "box", "corners" (small spheres where the corners at the base are) or "hull" (a convex
+        mesh of the block's eight corners).
+    planar: two slides and a hinge, and two corners in the middle plane, instead of a free joint and
+        four corners at the edges.
+    corner_radius, margin, carry: over the width: radius of the spheres; gap from which on a contact
+        acts; gap within which the corner about which the block turns stays in contact, however long
+        the step.
+    diagexact: scale each contact's regularization by the inertia that it feels, not by an estimate
+        of it made where the bodies were built.
+    damping, sliding_damping, stiffness: b dt along the contact's normal and along the base, and
+        k dt^2; all or none.
+    impedance: the five numbers of solimp; needed wherever damping is set.
+    soft_surface: depth over g dt^2 within which a contact grows from the first of the impedances to
+        the second, in place of their width; it keeps contacts that close together from parting. Of
         bodies that rest on others it is over g dt^2 sin(alpha)^2, and softens the first one, too.
-    solref : tuple of float or None
-        The contact in the library's other form, in place of damping and stiffness: its time
-        constant over the ordinary step and its damping ratio. Both should be positive: the library
-        takes a pair with one zero for its own default, and goes on.
-    floor : str
-        How a base that moves is moved: by a "weld" to a body that is, by its "surfacevel", or by
+    solref: the contact in the library's other form, in place of damping and stiffness: its time
+        constant over the ordinary step and its damping ratio, both positive: the library takes a
+        pair with one zero for its own default, and goes on.
+    floor: how a base that moves is moved: by a "weld" to a body that is, by its "surfacevel", or by
         "position" alone.
-    by_phase, reflection, preload : bool
-        Use `stiffness` at rest alone; give the velocity of the corner about which the block turns
-        back to it; press that corner by what its force yields, where `carry` is set.
+    by_phase, reflection, preload: use `stiffness` at rest alone; give the velocity of the corner
+        about which the block turns back to it; press that corner by what its force yields, where
+        `carry` is set.
+    others: options of the library.
     """
 
     geometry: str = setting("box", names=("box", "corners", "hull"))
@@ -127,20 +111,17 @@ class MujocoSettings:
         if self.damping is not None and self.impedance is None:
             raise ValueError("impedance is None; it must be given wherever damping is")
         if self.solref is not None and self.damping is not None:
-            raise ValueError(
-                f"solref is {self.solref!r}; it must be None wherever damping is given"
-            )
+            raise ValueError(f"solref is {self.solref!r}; it must be None where damping is given")
 
     def fitted(self, scene: Scene) -> "MujocoSettings":
         """Return settings whose impratio the friction allows, and whose soft surface fits.
 
-        Velocities are held and places follow, so that in every step a pivot is lifted by
-        (theta' dt)^2 R/2 along the base's normal. A contact makes up for it where it yields as much
-        to its force: by (1 - d)/d, d being its impedance, times force over mass. One that yields by
-        less at its surface lets go, and three columns or more need not come together again
-        (EQUATIONS.md, "The rocking frame"). One that yields by much less a little deeper overshoots
-        from step to step, and the columns hand their load on. Both ask for a surface in proportion
-        to the lift, which is that of theta' = p alpha: to sin(alpha)^2.
+        In every step a pivot is lifted by (theta' dt)^2 R/2. A contact makes up for it where it
+        yields as much to its force: by (1 - d)/d, d being its impedance, times force over mass. One
+        that yields by less at its surface lets go, and three columns or more need not come together
+        again (EQUATIONS.md, "The rocking frame"); one that yields by much less a little deeper
+        overshoots, and the columns hand their load on. Both ask for a surface in proportion to the
+        lift, which is that of theta' = p alpha: to sin(alpha)^2.
         """
         s = self
         if scene.stacked and s.impedance and s.soft_surface is not None:
@@ -153,10 +134,7 @@ class MujocoSettings:
         return replace(s, impratio=min(s.impratio, (s.friction / NARROWEST_CONE) ** 2))
 
     def solimp(self, scene: Scene, dt_s: float) -> tuple[float, ...]:
-        """Return the five numbers of solimp, the width [m] of a soft surface among them, or none.
-
-        They are the impedances at the surface and at the width, the width, midpoint and power.
-        """
+        """Return solimp: impedances at surface and width, width [m], midpoint, power; or none."""
         if self.impedance is None or self.soft_surface is None:
             return self.impedance or ()
         surface, whole, _, *curve = self.impedance
@@ -164,11 +142,7 @@ class MujocoSettings:
 
 
 def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
-    """Return the model of a scene in MuJoCo's own language, for steps of dt_s [s].
-
-    Bodies stand upright at rest, wherever they begin. A run sets the step, and contacts that have
-    a damping of ours, with each step.
-    """
+    """Return the model of a scene in MuJoCo's own language, its bodies upright, for steps [s]."""
     options = "".join(f'{k}="{getattr(s, k)}" ' for k in OPTIONS if getattr(s, k) is not None)
     flag = ""
     if s.diagexact is not None:
@@ -250,33 +224,16 @@ def _pairs(scene: Scene, s: MujocoSettings) -> Iterator[str]:
 
 
 def _corners(order: int, s: MujocoSettings) -> list[str]:
-    """Return the names of the spheres of a contact, by its place in the layout."""
     count = 2 if s.planar else 4
     return [f"corner{order * count + number}" for number in range(count)]
 
 
 def _named(shape: str, number: int) -> str:
-    """Return the name of a body's shape; the first body's is the shape's."""
     return f"{shape}{number or ''}"
 
 
 def _row(numbers: tuple[float, ...] | list[float]) -> str:
     return " ".join(map(repr, numbers))
-
-
-def coordinates(scene: Scene, s: MujocoSettings) -> tuple[list[float], list[float]]:
-    """Return the first of qpos and qvel, from which the bodies set out; see `Arrays`."""
-    places: list[float] = []
-    velocities: list[float] = []
-    for body in scene.bodies:
-        at, half, (x, z) = body.at, 0.5 * body.at.theta, body.home
-        if s.planar:
-            places += (at.x - x, at.z - z, at.theta)
-            velocities += (at.velocity_x, at.velocity_z, at.rate)
-        else:
-            places += (at.x, 0.0, at.z, math.cos(half), 0.0, math.sin(half), 0.0)
-            velocities += (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
-    return places, velocities
 
 
 class MujocoWorld:
@@ -294,10 +251,7 @@ class MujocoWorld:
         self.model = self._mj.MjModel.from_xml_string(self.xml)
         self._data = self._mj.MjData(self.model)
         self._fault = self._read_back(dt_s)
-        if not all(body.at.at_rest for body in scene.bodies):
-            places, velocities = coordinates(scene, s)
-            self._data.qpos[: len(places)] = places
-            self._data.qvel[: len(velocities)] = velocities
+        self._set_out()
         self.held = begin_contact(scene, s, dt_s, self.model.npair)
         self.arrays = self._arrays_of()
         self.drive: Any = None
@@ -310,6 +264,22 @@ class MujocoWorld:
                 self.drive = partial(compiled(drive), holds, self.arrays, memory)
         # the library would write its warnings to a file; they are counted and read from `fault`
         self._mj.set_mju_user_warning(lambda message: None)
+
+    def _set_out(self) -> None:
+        """Let the bodies set out from where the scene begins."""
+        places: list[float] = []
+        velocities: list[float] = []
+        for body in self._scene.bodies:
+            at, half, (x, z) = body.at, 0.5 * body.at.theta, body.home
+            if self.settings.planar:
+                places += (at.x - x, at.z - z, at.theta)
+                velocities += (at.velocity_x, at.velocity_z, at.rate)
+            else:
+                places += (at.x, 0.0, at.z, math.cos(half), 0.0, math.sin(half), 0.0)
+                velocities += (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
+        if not all(body.at.at_rest for body in self._scene.bodies):
+            self._data.qpos[: len(places)] = places
+            self._data.qvel[: len(velocities)] = velocities
 
     def step(self, step: Step) -> None:
         """Advance by a step."""
@@ -435,11 +405,8 @@ def begin_contact(scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> C
     )
 
 
-MODEL = "block.xml"
-"""File of a script's model, beside it."""
-
-SAID = ("<option", "<geom", "<pair", "<weld")
-"""Elements of a model that a preset sets, the joints apart."""
+MODEL, SAID = "block.xml", ("<option", "<geom", "<pair", "<weld")
+"""File of a script's model, beside it, and elements of it that a preset sets."""
 
 
 def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
@@ -460,12 +427,11 @@ def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
         step.insert(0 if welded else 2, "data.mocap_pos[0, 0] = base_x")
         if s.floor == "surfacevel":
             step.insert(0, "model.geom_surfacevel[0, 0] = base_velocity")
-    pose: tuple[str, ...] = (
-        "theta = 2.0 * math.atan2(data.qpos[7 * number + 5], data.qpos[7 * number + 3])",
-        "rate = data.qvel[6 * number + 4]",
-    )
     if s.planar:
-        pose = ("theta, rate = data.qpos[3 * number + 2], data.qvel[3 * number + 2]",)
+        pose = ["theta, rate = data.qpos[3 * number + 2], data.qvel[3 * number + 2]"]
+    else:
+        half = "math.atan2(data.qpos[7 * number + 5], data.qpos[7 * number + 3])"
+        pose = [f"theta = 2.0 * {half}", "rate = data.qvel[6 * number + 4]"]
     # the joint of a welded base is the last, a free one
     under = f" - {'data.qpos[-7]' if welded else 'base_x'}" * (scene.frame == "world")
     lines = map(str.strip, model.splitlines())
@@ -474,7 +440,7 @@ def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
         settings=tuple(dict.fromkeys(line for line in lines if line.startswith(SAID))),
         build=tuple(build),
         step=tuple(step),
-        pose=pose,
+        pose=tuple(pose),
         place=f"data.qpos[0]{under}",
         moment=world.moment,
         files={MODEL: model},

@@ -4,11 +4,9 @@ A contact holds its points to the acceleration -b v - k r, v being their velocit
 and k are the two numbers of `solref`, negative. Four things are set with a step:
 
 - b dt and k dt^2 are kept, so that b and k go with the step;
-- *reflection*: the centripetal acceleration c of a pivot is in proportion to the square of the
-  angular velocity. A pivot that leaves with -c h/2 is back where it was at the end of a step h. It
-  comes into the next step with c h/2, or with c h if it was held and not returned before. Were that
-  taken out (b dt = 1), it would creep, an error of first order; it is given back (b dt = 1 + part),
-  so that its mean over a step is zero. Not through an impact, nor in the first step after it;
+- *reflection* (`engines.parts.returned`): a pivot comes into a step h with c h/2, or with c h if it
+  was held and not returned before. Were that taken out (b dt = 1), it would creep, an error of
+  first order; it is given back (b dt = 1 + part), not through an impact, nor just after it;
 - *margin*: a pivot rises by (theta' dt)^2 R/2 in a step, and would lose its contact: that of a
   pivot acts from a gap on (`carry`), those of the others from the depth at which they carry the
   weight, so that the free corner strikes when it touches, not before;
@@ -38,59 +36,44 @@ MOST_REFLECTION = 25.0
 """No more than this part of the velocity with which a contact comes into a step is returned: after
 a far shorter step that is noise."""
 
-MOST_GROWTH = 20.0
+MOST_GROWTH, RELEASED_GROWTH = 20.0, 80.0
 """Where the block hardly turns, by how much faster it will turn is noise: a contact's velocity is
-returned as if it grew by no more than this many p dt in a step."""
-
-RELEASED_GROWTH = 80.0
-"""A released block gains speed steadily, so that it is known from earlier on how fast: nothing is
-returned until it grows by no more than this many p dt in a step. Any later, and the time until then
-is one without return, an error of first order."""
+returned as if it grew by no more than the first, in p dt a step. A released block gains speed
+steadily: nothing is returned until it grows by no more than the second. Any later, and the time
+until then is one without return, an error of first order."""
 
 FREE, WELDED = 7, 6
 """Coordinates of a free joint, and the solver's rows of a weld, which come before the contacts'."""
 
 SIDE, PIVOT, BODY, FACE, ON, WEIGHT, YIELDS, RESISTED = range(8)
-"""Columns of pairs.
-
-+1 for corners at -x, -1 for those at +x, 0 for a single pair; about which side the body turns for
-it to be the pivot; whose corner it is, of which face, and on which body (a `Contact`); the weight
-[N] that it carries as a pivot; by how much [m/s2] it yields to that, and to what it carries at
-rest.
-"""
+"""Columns of pairs: +1 for corners at -x, -1 for those at +x, 0 for a single pair; about which side
+the body turns for it to be the pivot; whose corner it is, of which face, and on which body; the
+weight [N] that it carries as a pivot; by how much [m/s2] it yields to that, and to what it carries
+at rest."""
 
 
 @dataclass(slots=True)
 class ContactState:
     """What holds a block, and what was seen of it.
 
-    Attributes
-    ----------
-    planar, moving, base_velocity, welded, single, stacked : bool
-        Whether bodies have three coordinates; whether the base moves, with a velocity, or as a body
-        of its own; whether all corners of a contact share one pair; whether bodies rest on others.
-    by_phase, reflects, preload : bool
-        What changes with the step, as in the settings.
-    width, height : float
-        Of a body that rocks, the half of the latter [m].
-    damping, sliding_damping, stiffness, impedance : float
-        Of the reference, the first 0 where it stays as the model has it.
-    carry : float
-        Gap [m] within which the pivot stays in contact; 0 for no such thing.
-    touching, pairs, corners : int
-        Contacts of the layout, pairs that touch, and how many of them at each side of a contact.
-    ordinary_squared, impedance_squared, growth, steady : float
-        Squares of the ordinary step [s] and of the impedance; by how much what is returned may grow
-        in a step, and where the block was released.
-    dt, time, sliding : float
-        Length and end of the last step [s], and the damping along the base in it.
-    moved, raised, velocity, lag : float
-        Place [m] and velocity [m/s] of the base, its height above where it began, and how far [m] a
-        welded one was at most from where it should have been.
-    aloft, released, rate, gained, returned, last_dt : bool, float
-        Whether the last step was of a swing, and every step since a release; the angular velocity
-        [rad/s], what it gained [rad/s2], the part of the pivot's velocity that was returned, and
-        the length of that step [s].
+    planar, moving, base_velocity, welded, single, stacked: whether bodies have three coordinates;
+        whether the base moves, with a velocity, or as a body of its own; whether all corners of a
+        contact share one pair; whether bodies rest on others.
+    by_phase, reflects, preload: what changes with the step, as in the settings.
+    width, height: of a body that rocks, the half of the latter [m].
+    damping, sliding_damping, stiffness, impedance: of the reference, the first 0 where it stays as
+        the model has it.
+    carry: gap [m] within which the pivot stays in contact; 0 for no such thing.
+    touching, pairs, corners: contacts of the layout, pairs that touch, and how many of them at each
+        side of a contact.
+    ordinary_squared, impedance_squared, growth, steady: squares of the ordinary step [s] and of the
+        impedance; how much what is returned may grow in a step, and where the block was released.
+    dt, time, sliding: length and end of the last step [s], and the damping along the base in it.
+    moved, raised, velocity, lag: place [m] and velocity [m/s] of the base, its height above where
+        it began, and how far [m] a welded one was at most from where it should have been.
+    aloft, released, rate, gained, returned, last_dt: whether the last step was of a swing, and
+        every step since a release; the angular velocity [rad/s], what it gained [rad/s2], the part
+        of the pivot's velocity that was returned, and the length of that step [s].
     """
 
     planar: bool = False
@@ -134,24 +117,17 @@ class ContactState:
 class Arrays(NamedTuple):
     """The library's arrays, and three of what it is asked about.
 
-    Attributes
-    ----------
-    position, velocity : ndarray (nq,), (nv,)
-        Of every joint, a welded base's last. A body in the plane has x, z [m] from its home, theta
-        [rad], and their rates; a free one x, y, z [m] and a quaternion, its real part first, and a
-        velocity [m/s] and angular velocity [rad/s].
-    gravity : ndarray (3,)
-    pair_reference, pair_friction, pair_margin : ndarray (pairs, 2), (pairs,)
-        The two numbers of `solref` along the normal and along the base, and the gap [m] from which
-        on a pair acts.
-    surface_velocity, base_place : ndarray (geoms, 6), (bodies moved, 3)
-        Of each shape's surface [m/s, rad/s], first that of the base; where the base is put [m].
-    pairs : ndarray (pairs, 8)
-        A row for each of the library's, columns `SIDE` to `RESISTED`.
-    homes : ndarray (bodies, 3)
-        Where the centre is at rest, along and above the base, and half of the height [m].
-    state : ndarray (bodies, 4)
-        The last one that was read, a `Pose` a row.
+    position, velocity: of every joint, a welded base's last. A body in the plane has x, z [m] from
+        its home, theta [rad], and their rates; a free one x, y, z [m] and a quaternion, its real
+        part first, and a velocity [m/s] and angular velocity [rad/s].
+    pair_reference, pair_friction, pair_margin (pairs, ...): the two numbers of `solref` along the
+        normal and along the base, and the gap [m] from which on a pair acts.
+    surface_velocity (geoms, 6), base_place (bodies moved, 3): of each shape's surface [m/s, rad/s],
+        first that of the base; where the base is put [m].
+    pairs (pairs, 8): a row for each of the library's, columns `SIDE` to `RESISTED`.
+    homes (bodies, 3): where the centre is at rest, along and above the base, and half of the height
+        [m].
+    state (bodies, 4): the last one that was read, a `Pose` a row.
     """
 
     position: FloatArray
@@ -168,10 +144,9 @@ class Arrays(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """What the solver says of a step.
+    """What the solver says of a step: how many contacts, and rows, R [1/kg] and f [N] of each row.
 
-    contacts and rows say how many contacts there are, and rows of the solver: those of a weld
-    first, then as many for each contact; resistance and force (rows,) are R [1/kg] and f [N].
+    The rows of a weld are first, then come as many for each contact.
     """
 
     contacts: int
@@ -197,11 +172,7 @@ def read(held: ContactState, arrays: Arrays) -> None:
 
 
 def prepare(held: ContactState, arrays: Arrays, step: Step) -> None:
-    """Set what a step needs, but for its length; `read` comes before.
-
-    Written are gravity, references and margins of contacts, the column `RESISTED` of pairs, place
-    and velocity of a base that moves.
-    """
+    """Set what a step needs, but for its length; `read` comes before."""
     changes = step.dt_s != held.dt or held.by_phase or held.reflects or held.carry != 0.0
     if changes and held.damping != 0.0:
         set_reference(held, arrays, step)
@@ -321,18 +292,13 @@ def gap_of(held: ContactState, arrays: Arrays, pair: int) -> float:
     z, theta = state[int(row[BODY]), 1], state[int(row[BODY]), 2]
     raised = 0.5 * held.width * math.sin(theta)
     if row[FACE] == LOWER:
-        level = z - held.height * math.cos(theta)
-        return level + row[SIDE] * raised
-    on = int(row[ON])
-    under = state[on, 1] - arrays.homes[on, 2]
+        return z - held.height * math.cos(theta) + row[SIDE] * raised
+    under = state[int(row[ON]), 1] - arrays.homes[int(row[ON]), 2]
     return under - (z + held.height * math.cos(theta) + row[SIDE] * raised)
 
 
 def notice(held: ContactState, arrays: Arrays, forces: Forces, step: Step) -> None:
-    """Note what a step has done, for the next one.
-
-    Of arrays the columns `YIELDS` and `RESISTED` of pairs are written [m/s2].
-    """
+    """Note what a step has done, for the next one."""
     held.moved = step.base_x if held.moving else 0.0
     if held.welded:
         # the joint of the base is the last

@@ -23,13 +23,9 @@ from engines.world import FloatArray
 mj_step: Any = types.ExternalFunction("mj_step", types.void(types.intp, types.intp))
 
 C_TYPES: Mapping[str, Any] = {
-    "int": ctypes.c_int,
-    "mjtBool": ctypes.c_bool,
-    "mjtNum": ctypes.c_double,
-    "mjtSize": ctypes.c_int64,
-    "size_t": ctypes.c_size_t,
-    "uint64_t": ctypes.c_uint64,
-    "uintptr_t": ctypes.c_size_t,
+    **{"int": ctypes.c_int, "mjtBool": ctypes.c_bool, "mjtNum": ctypes.c_double},
+    **{"mjtSize": ctypes.c_int64, "uint64_t": ctypes.c_uint64},
+    **dict.fromkeys(("size_t", "uintptr_t"), ctypes.c_size_t),
 }
 """The library's names of plain C types."""
 
@@ -37,8 +33,7 @@ C_TYPES: Mapping[str, Any] = {
 class Memory(NamedTuple):
     """Addresses of a model and its data, and arrays that share their memory.
 
-    These hold the step [s], ncon, nefc, the addresses of efc_R and efc_force, and the arena in
-    which both are, which begins at `base`.
+    These hold the step [s], ncon, nefc, the addresses of efc_R and efc_force, and their arena.
     """
 
     model: int
@@ -60,9 +55,9 @@ def drive(
     lists: Lists,
     most: int,
 ) -> int:
-    """Take up to so many steps while the run goes on; return how many were taken.
+    """Take up to so many steps while the run goes on; return how many; with 0 read the state.
 
-    runs and lists are as for `engines.run.look.next_step`; with most = 0 the state is read alone.
+    runs and lists are as for `engines.run.look.next_step`.
     """
     held = holds[0]
     read(held, arrays)

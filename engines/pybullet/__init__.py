@@ -17,25 +17,16 @@ from engines.declaration import (
     level,
     moving_base,
 )
-from engines.pybullet.build import (
-    LARGEST_FRICTION,
-    LIBRARY_STEP_S,
-    BulletSettings,
-    BulletWorld,
-    script,
-)
-
-SWEEPS = 25.0
-"""Twice what a solver needs that leaves no more than a rounding of the impulses at two corners."""
+from engines.pybullet.build import LIBRARY_STEP_S, BulletSettings, BulletWorld, script
 
 TUNED = BulletSettings(
     geometry="corners",
     planar=True,
     multibody=False,
-    friction=LARGEST_FRICTION,
+    friction=10.0,  # the most that the library takes
     exact_inertia=True,
     damping=0.0,
-    sweeps=SWEEPS,
+    sweeps=25.0,  # twice what leaves no more than a rounding of the impulses at two corners
     residual=1e-20,
     contact_erp=1.0,
     friction_erp=0.0,
@@ -169,7 +160,6 @@ FACTORS = (
     moving_base("velocity", "constraint", "position"),
 )
 """What its contact can be set to."""
-
 
 NAIVE = Preset(
     name="naive",

@@ -69,44 +69,26 @@ idle: list[int] = []
 class BulletSettings:
     """Settings of PyBullet, by default its own; None leaves a setting to the library.
 
-    Attributes
-    ----------
-    geometry, base_geometry : str
-        "box", "corners" (small spheres where the corners at the base are) or "hull" (a convex mesh
-        of the block's eight corners); of the base "plane" or "box".
-    planar : bool
-        Put two corner spheres into the middle plane instead of four at the edges.
-    multibody : bool
-        Build the block in reduced coordinates, as the library does by default.
-    friction : float
-        Coefficient between block and base; by default not the library's own, 0.5, with which a
-        block of H/B = 2 slides before it rocks.
-    corner_radius, breaking_threshold : float
-        Radius of the corner spheres over the width; gap, over the half diagonal, up to which a
-        contact is kept. The library holds the gap once for the whole process.
-    gap_by_step : bool
-        Keep contacts up to a gap of `KEPT_GAP` instead, out of which no sphere rolls.
-    exact_inertia : bool
-        Set the block's moments of inertia instead of those of its collision shape.
-    iterations, sweeps, residual : int, float, float or None
-        Of the solver: how many at most, or their number over 1/sin^2(alpha), and the squared
-        velocity [m2/s2] at which they end.
-    contact_erp, friction_erp, constraint_erp : float or None
-        Part of a position error that a step corrects: of contacts, of their friction anchor, and
-        of the constraint that holds a base.
-    by_phase : bool
-        Correct no positions in the short steps around an impact, and no slip at rest.
-    floor : str
-        How a base that moves is moved: by a "constraint", which holds a box with a mass, by its
+    geometry, base_geometry: "box", "corners" (small spheres where the corners at the base are) or
+        "hull" (a convex mesh of the block's eight corners); of the base "plane" or "box".
+    planar: put two corner spheres into the middle plane instead of four at the edges.
+    multibody: build the block in reduced coordinates, as the library does by default.
+    friction: of block and base; by default not the library's own, 0.5, with which a block of
+        H/B = 2 slides before it rocks.
+    corner_radius, breaking_threshold: radius of the corner spheres over the width; gap, over the
+        half diagonal, up to which a contact is kept, in the whole process.
+    gap_by_step: keep contacts up to a gap of `KEPT_GAP` instead, out of which no sphere rolls.
+    exact_inertia: set the block's moments of inertia instead of those of its collision shape.
+    iterations, sweeps, residual: of the solver: how many at most, or their number over
+        1/sin^2(alpha), and the squared velocity [m2/s2] at which they end.
+    contact_erp, friction_erp, constraint_erp: part of a position error that a step corrects: of
+        contacts, of their friction anchor, and of the constraint that holds a base.
+    by_phase: correct no positions in the short steps around an impact, and no slip at rest.
+    floor: how a base that moves is moved: by a "constraint", which holds a box with a mass, by its
         "velocity", or by "position" alone.
-    restitution, base_restitution : float or None
-        Coefficients of the block and of the base, which the library multiplies.
-    contact_stiffness, contact_damping : float or None
-        Of a yielding contact, over m p^2 and m p; both or neither.
-    damping, friction_anchor, contact_slop, solver, warm_starting, split_impulse, cone_friction
-    separating_axis, restitution_threshold
-        As the library has them: drag of the block; whether the point of contact is held by its
-        position, too; penetration [m] that is left alone; ...
+    restitution, base_restitution: of the block and of the base, which the library multiplies.
+    contact_stiffness, contact_damping: of a yielding contact, over m p^2 and m p.
+    others: as the library has them.
     """
 
     geometry: str = setting("box", names=("box", "corners", "hull"))
