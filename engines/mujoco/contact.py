@@ -221,25 +221,20 @@ def put_pair(table: FloatArray, first: float, second: float) -> None:
 
 def part_of(held: ContactState, step: Step) -> float:
     """Return the part to give back of the velocity with which the pivot comes into a step."""
-    was_aloft = held.aloft
+    was_aloft, before = held.aloft, held.returned
     held.aloft = step.phase == ContactPhase.SWING or step.phase == ContactPhase.APPROACH
     held.released = held.released and held.aloft
-    held.returned = part_returned(held, step) if was_aloft and held.aloft else 0.0
-    return held.returned
-
-
-def part_returned(held: ContactState, step: Step) -> float:
-    """Return that part in a swing, after another step of one."""
-    if held.rate == 0.0:
+    held.returned = 0.0
+    if not (was_aloft and held.aloft) or held.rate == 0.0:
         return 0.0
     faster = 1.0 + held.gained * step.kick_s / held.rate
     growth = faster * faster
     if held.released and growth > held.steady:
-        # what is returned too soon would stay in it
-        return 0.0
+        return 0.0  # what is returned too soon would stay in it
     most = held.steady if held.released else held.growth
     part = min(growth, most) * step.dt_s / held.last_dt
-    return min(part if held.returned != 0.0 else 0.5 * part, MOST_REFLECTION)
+    held.returned = min(part if before != 0.0 else 0.5 * part, MOST_REFLECTION)
+    return held.returned
 
 
 def set_reach(held: ContactState, arrays: Arrays, step: Step) -> None:
