@@ -32,10 +32,7 @@ SPACING, BEAM_DEPTH = 2.0, 0.2
 
 
 class Beginning(NamedTuple):
-    """Place [m, rad] and velocities [m/s, rad/s] of a body's centre at t = 0.
-
-    They are relative to the base, which is at rest then.
-    """
+    """Place [m, rad] and velocities [m/s, rad/s] of a body's centre at t = 0, from the base's."""
 
     x: float
     z: float
@@ -79,10 +76,7 @@ class Body:
 
 
 class Contact(NamedTuple):
-    """Corners of a body's face, which touch the flat face of another body or the base.
-
-    body and on are numbers of bodies, on may be `BASE`; face is `LOWER` or `UPPER`.
-    """
+    """Corners of a body's face, `LOWER` or `UPPER`, that touch another body's or the `BASE`."""
 
     body: int
     face: int

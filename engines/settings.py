@@ -72,8 +72,7 @@ def setting(default: Any = None, *, names: Sequence[str] = (), **allowed: Any) -
 def check(settings: Any) -> None:
     """Raise ValueError unless each of the settings is what its field allows.
 
-    None is that where it leaves the setting to the library, but not for one of several names of
-    ours: there it would be none of them.
+    None leaves a setting to the library, but it is none of several names of ours.
     """
     for item in fields(settings):
         allowed, value = item.metadata.get("allowed"), getattr(settings, item.name)

@@ -41,10 +41,7 @@ def rows_of(segments: Iterable[Iterable[float]]) -> list[Segment]:
 
 
 def mean_velocity_over(rows: Ground, begin: float, finish: float) -> float:
-    """Return the base's mean velocity [m/s] between two times [s], by exact integration.
-
-    rows are those of `rows_of`; the second time may be the first.
-    """
+    """Return the base's mean velocity [m/s] between two times [s], by exact integration."""
     first = last = segment_at(rows, begin)
     while finish > rows[last][END]:
         last += 1

@@ -25,10 +25,7 @@ FIXED, LANDING, EVEN = map(POLICIES.index, (Stepping.FIXED, Stepping.LANDING, St
 
 
 class Load(NamedTuple):
-    """A time [s] during which the base accelerates enough to lift a block at rest.
-
-    side is the corner that the block would turn about, -1 or 1.
-    """
+    """A time [s] during which the base can lift a block at rest, about its corner at -1 or 1."""
 
     begin: float
     end: float
