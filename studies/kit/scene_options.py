@@ -182,7 +182,8 @@ def block_of(width: float, height: float) -> RigidBlock:
     """Return the block of --width and --height [m], or refuse one that was meant in millimetres."""
     for name, size in (("width", width), ("height", height)):
         if size > MOST_M:
-            raise BadInputError(f"--{name} is {size:g}; it must be at most {MOST_M:g}, in metres")
+            meant = f"in metres, as --{name} {1e-3 * size:g} for {size:g} mm"
+            raise BadInputError(f"--{name} is {size:g}; it must be at most {MOST_M:g}, {meant}")
     with as_bad_input():
         return RigidBlock(width=width, height=height)
 
