@@ -11,9 +11,6 @@ import numpy as np
 MOST_SAMPLES = 1_000_000
 """Longest record that is read: 83 minutes at 200 Hz."""
 
-SECONDS_A_SAMPLE, BYTES_A_SAMPLE = 2e-5, 400
-"""What a sample takes, measured: time of an exact solution that rocks, memory of a table."""
-
 BYTES_PRINTED = 16
 """Bytes of a file for each sample: the width of a column in most of them."""
 
@@ -72,12 +69,8 @@ def _content(path: Path) -> bytes:
 
 
 def too_long(count: int, about: str = "") -> ValueError:
-    """Return the refusal of a record of so many samples, with what it would take."""
-    minutes, gigabytes = count * SECONDS_A_SAMPLE / 60.0, count * BYTES_A_SAMPLE * 1e-9
-    return ValueError(
-        f"it holds {about}{count} samples, for which one exact solution would take some "
-        f"{minutes:.2g} min and {gigabytes:.2g} GB; it must hold {MOST_SAMPLES} at most"
-    )
+    """Return the refusal of a record of so many samples."""
+    return ValueError(f"it holds {about}{count} samples; it must hold {MOST_SAMPLES} at most")
 
 
 def shown(word: str) -> str:
@@ -99,12 +92,6 @@ def finite_number(word: str) -> float:
         raise ValueError(f"a number{' with a decimal point' if ',' in word else ''}")
     if not math.isfinite(float(word)):
         raise ValueError("a finite number")
-    if underflows(word):
+    if float(word) == 0.0 and re.search("[1-9]", re.split("[eE]", word)[0]):
         raise ValueError(f"0, or at least {math.ulp(0.0):g}")
     return float(word)
-
-
-def underflows(word: str) -> bool:
-    """Whether a word is a number other than 0 that floating point makes 0."""
-    zero = is_number(word) and float(word) == 0.0
-    return zero and re.search("[1-9]", re.split("[eE]", word)[0]) is not None

@@ -152,14 +152,14 @@ class DartWorld:
         s, dart, solver = self._s, self._dart, self.world.getConstraintSolver()
         if s.collision is not None:
             solver.setCollisionDetector(getattr(dart.collision, DETECTORS[s.collision])())
-        if s.sleeping is not None and hasattr(self.world, "setDeactivationOptions"):
-            options = self.world.getDeactivationOptions()  # a release without them has no sleep
+        if s.sleeping is not None:
+            options = self.world.getDeactivationOptions()
             options.mEnabled = s.sleeping
             self.named["options"].append(options)
             self.world.setDeactivationOptions(options)
         if s.solver is not None:
             solver.setBoxedLcpSolver(getattr(dart.constraint, SOLVERS[s.solver])())
-        if s.split_impulse is not None and hasattr(solver, "setSplitImpulseEnabled"):
+        if s.split_impulse is not None:
             solver.setSplitImpulseEnabled(s.split_impulse)
 
     def _new_base(self, scene: Scene) -> Any:
@@ -287,8 +287,6 @@ class DartWorld:
 
     def _read_back(self, scene: Scene) -> str:
         s, world, solver = self._s, self.world, self.world.getConstraintSolver()
-        sleeps = hasattr(world, "getDeactivationOptions")
-        splits = hasattr(solver, "isSplitImpulseEnabled")
         shapes = [self.floor.getShapeNode(0), self._block.getShapeNode(0)]
         top, own = (node.getDynamicsAspect() for node in shapes)
         bounce = None if s.restitution is None else s.restitution * s.base_restitution
@@ -297,8 +295,8 @@ class DartWorld:
             "friction": (s.friction, min(top.getFrictionCoeff(), own.getFrictionCoeff())),
             "restitution": (bounce, bounces),
             "solver": (SOLVERS.get(s.solver or ""), type(solver.getBoxedLcpSolver()).__name__),
-            "split impulse": (s.split_impulse, splits and solver.isSplitImpulseEnabled()),
-            "sleeping": (s.sleeping, sleeps and world.getDeactivationOptions().mEnabled),
+            "split impulse": (s.split_impulse, solver.isSplitImpulseEnabled()),
+            "sleeping": (s.sleeping, world.getDeactivationOptions().mEnabled),
         }
         for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
             moment = wanted.inertia[1] * self._unit**2 if s.exact_inertia else None

@@ -62,6 +62,9 @@ class Options:
 def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
     """Return the jobs of every variant, at one step of all and then at the library's own."""
     framed = options.scene == "frame"
+    if framed and not any(ENGINES[engine].stacks for engine in options.engines):
+        words = f"none of --engines is built for it: {', '.join(options.engines)}"
+        raise BadInputError(f"--scene is {options.scene!r}; {words}")
     cases: Sequence[tuple[str, Case | RandomCase]]
     cases = (
         frame_cases(quick)
@@ -74,7 +77,7 @@ def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
         ]
     )
     tried = [variant for engine in options.engines for variant in variants(engine)]
-    found = [
+    return [
         job_of(variant, kind, case, quick, own_step)
         for own_step in (False, True)
         for variant in tried
@@ -82,10 +85,6 @@ def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
         for kind, case in cases
         if not framed or is_built_for(variant, case)
     ]
-    if not found:
-        words = f"none of --engines is built for it: {', '.join(options.engines)}"
-        raise BadInputError(f"--scene is {options.scene!r}; {words}")
-    return found
 
 
 def frame_cases(quick: bool) -> list[tuple[str, RandomCase]]:

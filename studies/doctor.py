@@ -11,7 +11,7 @@ from analytic import simulate
 from analytic.kernels.forms import SOURCES
 from analytic.kernels.kept import kept_in
 from engines import ENGINES, installed_engines
-from engines.declaration import UNTUNED
+from engines.declaration import UNTUNED, Precision
 from engines.run.look import PACKAGE
 from studies.cases.paper import HISTORIES
 from studies.kit.arguments import TimeLimit
@@ -24,10 +24,9 @@ from studies.sources.registry import Source
 
 CASE = HISTORIES[5][1]
 """What each engine is asked: figure 5-b of the paper."""
-LOOSE, EQUAL, LANDING = 0.3, 2e-2, 1e-4
-"""Relative error of its peak that a preset should keep: as documented, at equal steps, landing."""
-LANDING_SINGLE = {"rapier": 6e-3, "physx": 6e-3}
-"""Engine -> that of steps that land, where its numbers are in single precision."""
+LOOSE, EQUAL, LANDING, LANDING_SINGLE = 0.3, 2e-2, 1e-4, 6e-3
+"""Relative error of its peak that a preset should keep: as documented, at equal steps, landing in
+double and in single precision."""
 LEAST_BYTES = 5e8
 """Free space that the results of most studies fit into."""
 
@@ -90,5 +89,6 @@ def compare(source: Source, row: Row) -> tuple[str, str]:
 def should_keep(source: Source) -> float:
     """Return the relative error of its peak that an engine's preset should keep."""
     if source.lands:
-        return LANDING_SINGLE.get(source.engine, LANDING)
+        single = source.declared.precision is Precision.SINGLE
+        return LANDING_SINGLE if single else LANDING
     return LOOSE if source.preset in UNTUNED else EQUAL

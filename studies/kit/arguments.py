@@ -10,7 +10,7 @@ from typing import Annotated, Any, TypeVar, get_args
 
 from cyclopts import Parameter, Token
 
-from analytic.text import finite_number, underflows
+from analytic.text import finite_number
 from engines import ENGINES
 from engines.scene import MOST_HALF_CYCLES
 from engines.settings import perhaps
@@ -40,11 +40,9 @@ def _read(allowed: str, convert: Callable[[type, str], Any]) -> Any:
         try:
             return convert(type_, token.value)
         except ValueError as error:
-            name, beside = token.keyword or "FOLDER", ""  # only an option has a keyword
-            if type_ is float and "," in token.value:
-                beside = ", with a decimal point"
-            elif type_ is float and underflows(token.value):
-                beside = f", and no smaller than {math.ulp(0.0):g} unless 0"
+            name = token.keyword or "FOLDER"  # only an option has a keyword
+            beside = f", {error}" if str(error).startswith("0, or") else ""  # it underflows
+            beside = ", with a decimal point" if "," in token.value and type_ is float else beside
             words = f"{name} is {token.value!r}; it must be {allowed}{beside}"
             raise BadInputError(words) from error
 

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import BEST, DEFAULT, LEFT_OUT, Help, Stepping
+from engines.declaration import BEST, LEFT_OUT, Help, Stepping
 from engines.registry import OWN
 from studies.kit.identity import NOT_INSTALLED
 from studies.kit.say import capital, duration, listed, part
@@ -142,21 +142,6 @@ def documented() -> Iterator[tuple[str, ...]]:
     for name in OWN:
         for use in ENGINES[name].presets:
             yield from ((f"{TITLES[name]} `:{use.name}`", *source) for source in use.documented)
-
-
-def beside_own() -> str:
-    """Return which settings of "naive" are not the libraries' own, and what those would be."""
-    own = {TITLES[name]: ENGINES[name].preset(DEFAULT) for name in OWN}
-    said = []
-    for setting in dict.fromkeys(name for preset in own.values() for name in preset.own):
-        having = {title: preset for title, preset in own.items() if setting in preset.own}
-        (value,) = {getattr(preset.settings, setting) for preset in having.values()}
-        theirs: dict[Any, list[str]] = {}
-        for title, preset in having.items():
-            theirs.setdefault(preset.own[setting], []).append(title)
-        words = [f"{other} in {listed(titles)}" for other, titles in theirs.items()]
-        said.append(f"`{setting}` is {value} here, by default {listed(words)}")
-    return "; ".join(said)
 
 
 def _error(line: Line) -> str:

@@ -140,19 +140,6 @@ def test_friction_that_has_no_mass_is_left_to_another_solver():
         assert apart < 1e-12 if mirrored else apart > 1e-5
 
 
-def test_a_release_of_dart_without_an_option_has_it_off(monkeypatch):
-    dartpy = pytest.importorskip("dartpy")
-    as_it_is = rocked("dart", preset="fixed").peak_ratio
-    for name in ("isSplitImpulseEnabled", "setSplitImpulseEnabled"):
-        monkeypatch.delattr(dartpy.constraint.ConstraintSolver, name)
-    for name in ("getDeactivationOptions", "setDeactivationOptions"):
-        monkeypatch.delattr(dartpy.simulation.World, name)
-    assert rocked("dart", preset="fixed").peak_ratio == as_it_is
-    asked = rocked("dart", preset="fixed", settings={"split_impulse": True})
-    assert asked.reason is Reason.FAULT
-    assert "split impulse" in asked.message
-
-
 def test_what_drake_gives_up_on_ends_the_run_and_not_the_process(monkeypatch):
     """A condition of its own that does not hold is no error in Python but the end of it."""
     pytest.importorskip("pydrake")

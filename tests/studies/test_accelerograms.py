@@ -1,7 +1,6 @@
 """Recorded accelerograms: each form is read as its header says, a doubt refused."""
 
 import os
-import re
 
 import numpy as np
 import pytest
@@ -378,9 +377,8 @@ def test_a_record_of_ten_million_samples_is_refused_at_once(tmp_path, capsys):
     path = tmp_path / "long.AT2"
     for text in (GOOD.replace("7,", "10000000,"), asc("NDATA: 7", "NDATA: 10000000")):
         path.write_text(text)
-        words = "it holds 10000000 samples, for which one exact solution would take"
-        message = refused(capsys, [*IN_G, path], BEGIN, words)
-        assert re.search(r"some [\d.]+ min and [\d.]+ GB; it must hold 1000000 at most", message)
+        words = "it holds 10000000 samples; it must hold 1000000 at most"
+        refused(capsys, [*IN_G, path], BEGIN, words)
 
 
 @pytest.mark.parametrize("content", [b"0 0\n" * (MOST_SAMPLES + 5001), MOST_BYTES + 1])

@@ -22,7 +22,7 @@ compare --width 0.5 --height nan PULSE | --height is 'nan' | finite
 compare CASE --friction -1 | --friction is '-1'; it must be a finite number, 0 or more
 compare CASE --friction 1_0 | --friction is '1_0' | 0 or more
 compare CASE --tilt nan | --tilt is 'nan' | finite
-compare CASE --rate 1e-400 | --rate is '1e-400'; it must be a finite number, and no smaller than
+compare CASE --rate 1e-400 | --rate is '1e-400'; it must be a finite number, 0, or at least
 compare CASE --tilt 0,5 | --tilt is '0,5'; it must be a finite number, with a decimal point
 blocks comma.csv --record X.AT2 --out DIR | width is '0,5'; it must be from | with a decimal point
 compare CASE --jobs 0 | --jobs is '0' | positive whole number
