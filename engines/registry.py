@@ -73,7 +73,7 @@ def named(place: str) -> str:
     is then called as its module.
     """
     if not re.fullmatch(r"[\w.]+:[\w.]+", place):
-        raise ValueError(f"engine {place!r} is no place; it must be like my_package.mine:ENGINE")
+        raise ValueError(f"engine is {place!r}; it must be like my_package.mine:ENGINE")
     module = place.partition(":")[0]
     found = _found(place, EntryPoint(module, place, GROUP))
     if isinstance(found, Engine):
