@@ -30,9 +30,9 @@ It holds
 - where its library can be stepped from compiled code, ``drive``: to the bit what ``step`` and
   ``state`` give;
 - where it can hold several bodies, and bodies that rest on others, ``stacks``;
-- ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "naive" (the library
-  as its own documentation shows it, each setting with its source) to the best there is, and what
-  the studies try of its contact.
+- ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "default" (as the
+  library's own documentation shows it, each setting with its source) to the best there is, and
+  what the studies try of its contact.
 
 The conformance tests run over the registry and take their tolerances from the declaration.
 """

@@ -328,7 +328,7 @@ FACTORS = (
 )
 
 NAIVE = Preset(
-    name="naive",
+    name="default",
     settings=Box2DSettings(),
     step_s=1.0 / 60.0,
     documented=DOCUMENTED,
@@ -352,7 +352,7 @@ ENGINE = Engine(
             iterations=8,
             position_iterations=3,
         ),
-        Preset(name="fixed", settings=TUNED, step=1e-3, helped_by={Help.MARGIN: {"margin": None}}),
+        Preset(name="tuned", settings=TUNED, step=1e-3, helped_by={Help.MARGIN: {"margin": None}}),
         Preset(
             name="landing",
             settings=replace(TUNED, reflection=True),

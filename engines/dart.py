@@ -432,7 +432,7 @@ FACTORS = (
 """What its contact can be set to."""
 
 NAIVE = Preset(
-    name="naive", settings=DartSettings(), step_s=1e-3, documented=DOCUMENTED, frame="world"
+    name="default", settings=DartSettings(), step_s=1e-3, documented=DOCUMENTED, frame="world"
 )
 
 ENGINE = Engine(
@@ -447,7 +447,7 @@ ENGINE = Engine(
         NAIVE,
         NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, sleeping=False),
-        Preset(name="fixed", settings=TUNED, step=5e-4),
+        Preset(name="tuned", settings=TUNED, step=5e-4),
         Preset(
             name="landing",
             settings=replace(TUNED, margin=0.5, reflection=True),

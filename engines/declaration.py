@@ -31,7 +31,7 @@ class Citation(NamedTuple):
     where: str
 
 
-BEST, DEFAULT = BOTH = ("fixed", "naive")
+BEST, DEFAULT = BOTH = ("tuned", "default")
 """The presets from which one factor at a time is varied."""
 
 AS_BEST, BY_DEFAULT = "as in the best", "default"
@@ -129,20 +129,20 @@ class Precision(enum.Enum):
     SINGLE = 2.0**-24
 
 
-AT_REST = "naive-base-at-rest"
+AT_REST = "default-at-rest"
 """The library as it is documented, but for its floor: that is at rest, and gravity aimed anew."""
 
 RECOMMENDED = "recommended"
 """The library as its documentation, or who maintains it, recommends it for accurate contact."""
 
-UNTUNED = ("naive", AT_REST, RECOMMENDED)
+UNTUNED = ("default", AT_REST, RECOMMENDED)
 """Names of the presets that are the library's own."""
 
 TITLES = {
-    "naive": "as its documentation shows it",
+    "default": "as its documentation shows it",
     AT_REST: "the same on a base at rest",
     RECOMMENDED: "as its documentation recommends for stiff contact",
-    "fixed": "best at a fixed step",
+    "tuned": "best at a fixed step",
     "landing": "steps that land on impacts",
 }
 """Name of a preset -> what a reader is told it is."""
@@ -154,18 +154,18 @@ class Preset:
 
     Attributes
     ----------
-    name, title : "naive" (as documented), "fixed", ...; what a reader is told where not as `TITLES`
+    name, title : "default" (as documented), "tuned", ...; what a reader is told if not `TITLES`
     settings : the engine's settings class, one of whose fields is "friction"
     stepping : who chooses the steps
     step, step_s : p dt of equal steps, or the library's own [s]
-    documented : what the documentation sets of "naive" and "recommended", and where it says so
+    documented : what the documentation sets of "default" and "recommended", and where it says so
     frame : one of `FRAMES`, where a scene does not say
     accuracy_knob : the setting that trades time for accuracy where that is not the step, and its
         values from cheap to dear
     helped_by : what helps -> the settings that leave it out; None where it is the preset itself
     stacked : settings in place of some of these where bodies rest on others; None where none can
     stacks : builds such a scene, in place of the engine's build
-    own : of "naive", settings that are not the library's own -> what it has by itself
+    own : of "default", settings that are not the library's own -> what it has by itself
     """
 
     name: str

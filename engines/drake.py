@@ -445,7 +445,7 @@ DOCUMENTED = (
         "examples/multibody/deformable/deformable_torus.cc",
     ),
 )
-"""What the preset "naive" is documented by."""
+"""What the preset "default" is documented by."""
 
 RECOMMENDED = (
     Citation("solver", "similar, where impacts are to be resolved", "DiscreteContactApproximation"),
@@ -490,7 +490,7 @@ FACTORS = (
             level("4 corners", BOTH, geometry="corners", planar=False),
             level("planar box", trap=DEEPEST, geometry="box"),
         ),
-        traps={"fixed": DEEPEST},
+        traps={"tuned": DEEPEST},
     ),
     factor("corner_radius", level("B/500", corner_radius=2e-3)),
     factor("friction", level("1.3", friction=NO_JAM)),
@@ -499,7 +499,7 @@ FACTORS = (
 """What its contact can be set to."""
 
 NAIVE = Preset(
-    name="naive",
+    name="default",
     settings=DrakeSettings(),
     step_s=1e-3,
     documented=DOCUMENTED,
@@ -519,7 +519,7 @@ ENGINE = Engine(
         NAIVE,
         NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, solver="similar", geometry="corners", stiffness=0.0133),
-        Preset(name="fixed", settings=TUNED, step=3e-4),
+        Preset(name="tuned", settings=TUNED, step=3e-4),
         Preset(
             name="error-controlled",
             title="steps of its own, by its own estimate of the error",

@@ -372,7 +372,7 @@ DOCUMENTED = (
     ),
     Citation("shapes", "a box on add_shape_plane(body=belt), where the solver is Kamino", BELT),
 )
-"""What the preset "naive" is documented by: the example in which a floor moves."""
+"""What the preset "default" is documented by: the example in which a floor moves."""
 
 RECOMMENDED = (
     Citation("step", "a smaller dt first, before all else of a solver", "simulation_tuning.rst"),
@@ -404,7 +404,7 @@ FACTORS = (
 """What its contact can be set to."""
 
 NAIVE = Preset(
-    name="naive", settings=NewtonSettings(), step_s=1e-3, documented=DOCUMENTED, frame="world"
+    name="default", settings=NewtonSettings(), step_s=1e-3, documented=DOCUMENTED, frame="world"
 )
 
 ENGINE = Engine(
@@ -419,7 +419,7 @@ ENGINE = Engine(
         NAIVE,
         NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, step_s=1.0 / 600.0, iterations=20),
-        Preset(name="fixed", settings=TUNED, step=1e-3),
+        Preset(name="tuned", settings=TUNED, step=1e-3),
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,

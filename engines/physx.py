@@ -403,7 +403,7 @@ FACTORS = (
 """What its contact can be set to."""
 
 NAIVE = Preset(
-    name="naive",
+    name="default",
     settings=PhysxSettings(),
     step_s=0.01,
     documented=DOCUMENTED,
@@ -430,7 +430,7 @@ ENGINE = Engine(
             velocity_iterations=4,
             bounce_threshold=0.2,
         ),
-        Preset(name="fixed", settings=TUNED, step=1e-3),
+        Preset(name="tuned", settings=TUNED, step=1e-3),
         Preset(
             name="landing",
             settings=LANDING,

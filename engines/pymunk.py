@@ -305,14 +305,14 @@ FACTORS = (
     Factor("iterations", ("iterations", "sweeps"), (level("100", iterations=100),)),
     factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
     factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
-    factor("unit", level("the README's 100 in a metre", ("naive",), unit=100.0)),
-    factor("slop", level("0", ("naive",), slop=0.0), level("1e-4 m", ("naive",), slop=1e-4)),
+    factor("unit", level("the README's 100 in a metre", ("default",), unit=100.0)),
+    factor("slop", level("0", ("default",), slop=0.0), level("1e-4 m", ("default",), slop=1e-4)),
     factor("friction", level("5", friction=5.0, trap="Painlevé's paradox: the pivot jams")),
     moving_base("both", "velocity", "position"),
 )
 
 NAIVE = Preset(
-    name="naive",
+    name="default",
     settings=PymunkSettings(),
     step_s=0.02,
     documented=DOCUMENTED,
@@ -333,7 +333,7 @@ ENGINE = Engine(
         NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, step_s=0.002, slop=1e-3),
         Preset(
-            name="fixed", settings=TUNED, step=2.5e-4, helped_by={Help.MARGIN: {"margin": None}}
+            name="tuned", settings=TUNED, step=2.5e-4, helped_by={Help.MARGIN: {"margin": None}}
         ),
         Preset(
             name="landing",

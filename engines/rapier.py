@@ -396,7 +396,7 @@ FACTORS = (
             level("1000 steps", correction=1000.0),
         ),
     ),
-    factor("recycling", traps={"fixed": RECYCLED}, name="contact recycling"),
+    factor("recycling", traps={"tuned": RECYCLED}, name="contact recycling"),
     ASLEEP,
     factor("locked_aside", level("y locked", trap=FRICTIONLESS, locked_aside=True), name="locks"),
     factor("stabilization"),
@@ -440,7 +440,7 @@ FACTORS = (
 """What its contact can be set to."""
 
 NAIVE = Preset(
-    name="naive",
+    name="default",
     settings=RapierSettings(),
     step_s=1.0 / 60.0,
     documented=DOCUMENTED,
@@ -460,7 +460,7 @@ ENGINE = Engine(
         NAIVE,
         NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, step_s=1.0 / 120.0, substeps=8, coulomb=True),
-        Preset(name="fixed", settings=TUNED, step=5e-4),
+        Preset(name="tuned", settings=TUNED, step=5e-4),
         Preset(
             name="landing",
             settings=replace(TUNED, reflection=True),

@@ -181,7 +181,7 @@ def undeclared(name: str, build: Builder, library: str) -> Engine:
 
     It holds one body, in the frame "base" alone, in equal steps and in ones that land.
     """
-    fixed = Preset(name="fixed", title="equal steps", settings=PlainSettings(), step=1e-3)
+    fixed = Preset(name="tuned", title="equal steps", settings=PlainSettings(), step=1e-3)
     landing = Preset(
         name="landing",
         settings=PlainSettings(),

@@ -262,7 +262,7 @@ class Scene:
     --------
     >>> from analytic import RigidBlock, SinePulse
     >>> block = RigidBlock(width=0.5, height=1.5)
-    >>> Scene(system=block, motion=SinePulse(amplitude=4.0, omega=6.0), preset="fixed").stacked
+    >>> Scene(system=block, motion=SinePulse(amplitude=4.0, omega=6.0), preset="tuned").stacked
     False
     """
 

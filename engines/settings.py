@@ -22,8 +22,16 @@ def one_of(name: str, value: str, allowed: Iterable[str]) -> None:
         raise ValueError(f"{name} is {value!r}{near}; it must be one of {', '.join(allowed)}")
 
 
+RENAMED = {"naive": "default", "naive-base-at-rest": "default-at-rest", "fixed": "tuned"}
+"""Name that a preset had until 0.3 -> its name."""
+
+
 def perhaps(value: str, allowed: Sequence[str]) -> str:
     """Return the words that name the one of those allowed which a value is like, if one is."""
+    owner, colon, preset = str(value).rpartition(":")
+    renamed = f"{owner}{colon}{RENAMED.get(preset, '')}"
+    if renamed in allowed:
+        return f", now {renamed!r}"
     near = get_close_matches(str(value).lower(), allowed, 1, 0.7)
     return f", perhaps {near[0]!r}" if near else ""
 

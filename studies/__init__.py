@@ -36,7 +36,7 @@ def respond(
     ----------
     source : str
         A name of `studies.sources.registry.SOURCES`; an engine takes a preset after a colon, as in
-        ``"mujoco:fixed"``.
+        ``"mujoco:tuned"``.
     block : RigidBlock, RockingFrame or SlidingBlock
         What stands on the base.
     motion : Motion, optional

@@ -20,7 +20,7 @@ from studies.kit.run import exit_code, here, run
 from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless
 from studies.sources.registry import core_sources
 
-DEFAULT_SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
+DEFAULT_SOURCES = ("exact", "housner", *core_sources("default"), *core_sources())
 FRAMES_A_SECOND, MOST_FRAMES, MOST_SOURCES = 25, 1500, 8
 """At most a minute of film, which holds up to 1 GB of memory while it is drawn."""
 

@@ -108,7 +108,7 @@ def source_of(engine: str) -> str:
     if colon and preset not in equal:
         words = f"its preset must have equal steps: {', '.join(equal)}"
         raise BadInputError(f"--engine is {engine!r}; {words}")
-    return engine if colon else f"{name}:fixed"
+    return engine if colon else f"{name}:tuned"
 
 
 def measure(job: Job) -> Row:

@@ -304,7 +304,7 @@ STUDY = Study(
 
 Models map amplitude over frequency, beside where each differs from the exact solution, and where
 that needs more friction than there is, or lifts off. Engines that --sources names are asked pulse
-by pulse, of two similar blocks: --sources engines:naive.""",
+by pulse, of two similar blocks: --sources engines:default.""",
     sources=("exact", "housner", "modified", "onset-matched"),
     options=Options,
     quick="A coarser map, and fewer pulses for engines.",

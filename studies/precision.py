@@ -98,7 +98,7 @@ def methods_of(sources: Iterable[str]) -> dict[str, Method]:
             source, knob = f"{engine}:{use.name}", use.accuracy_knob
             setting, values = knob or ("step", STEPS[1:-1])
             found[f"{engine} {use.name}"] = Method(source, setting, values, own=knob is not None)
-            if use.name == "fixed" and use.takes(iterations=1):
+            if use.name == "tuned" and use.takes(iterations=1):
                 values = (2.0, 5.0, 10.0, 50.0, 200.0)
                 method = Method(source, "iterations", values, {"step": 1e-3}, own=True)
                 iterated[f"{engine} fixed, iterations"] = method
@@ -183,7 +183,7 @@ def omissions() -> dict[str, dict[str, Any]]:
         "base moving in the world": {"frame": "world"},
         "8/p of free rocking after the pulse": {"duration": window},
         "the same, recorded as a history": {"duration": window, "times": window * grid},
-        "steps all equal": {"preset": "fixed"},
+        "steps all equal": {"preset": "tuned"},
     }
 
 

@@ -95,7 +95,7 @@ def job_of(
     return Job(
         labels={**labels, **USUAL, **other},
         case=Question(system=block, motion=STILL, start=start),
-        source=f"{engine}:fixed",
+        source=f"{engine}:tuned",
         options={"step": step, "settings": settings},
     )
 

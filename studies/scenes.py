@@ -303,7 +303,7 @@ restitution does; the slide is friction alone: two slips under a pulse, a launch
 the onset; the floor is moved in each way that an engine has, and should carry a block along. Steps
 that land on impacts are asked about frames alone. What an engine is not built for is a row that
 says so. Ten minutes.""",
-    sources=core_sources("naive", "fixed", "landing"),
+    sources=core_sources("default", "tuned", "landing"),
     quick="One frame, one slide, and two places of the steps.",
     jobs=jobs,
     measure=measure,

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SOLVERS = ("rk4", "average-acceleration", "dop853", "radau")
-METHODS = ("exact", *SOLVERS, *core_sources("", "fixed", "naive"))
+METHODS = ("exact", *SOLVERS, *core_sources("", "tuned", "default"))
 RUN_S = 60.0
 """Time limit of a row, and of a run of an engine [s]."""
 MOST_STEPS = {"matrix": 5_000_000, "steps": 500_000}

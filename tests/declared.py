@@ -26,19 +26,17 @@ class Miss(Enum):
 
 MISSED = {
     Miss.MIRROR: (
-        *("pymunk:naive", "pymunk:naive-base-at-rest", "pymunk:recommended"),
-        *("box2d:naive", "box2d:naive-base-at-rest", "box2d:recommended"),
-        *("rapier:naive", "rapier:naive-base-at-rest", "rapier:recommended"),
-        *("physx:naive", "physx:naive-base-at-rest", "physx:recommended"),
+        *("pymunk:default", "pymunk:default-at-rest", "pymunk:recommended"),
+        *("box2d:default", "box2d:default-at-rest", "box2d:recommended"),
+        *("rapier:default", "rapier:default-at-rest", "rapier:recommended"),
+        *("physx:default", "physx:default-at-rest", "physx:recommended"),
     ),
     Miss.PEAK: (
-        *("mujoco:recommended", "pymunk:naive-base-at-rest", "drake:naive-base-at-rest"),
-        *("box2d:naive", "box2d:naive-base-at-rest", "box2d:recommended", "rapier:naive"),
+        *("mujoco:recommended", "pymunk:default-at-rest", "drake:default-at-rest"),
+        *("box2d:default", "box2d:default-at-rest", "box2d:recommended", "rapier:default"),
     ),
-    Miss.RECORD: (
-        *("pymunk:naive-base-at-rest", "box2d:naive-base-at-rest", "rapier:naive-base-at-rest"),
-    ),
-    Miss.SLEEP: ("box2d:naive-base-at-rest", "dart:naive", "rapier:naive-base-at-rest"),
+    Miss.RECORD: (*("pymunk:default-at-rest", "box2d:default-at-rest", "rapier:default-at-rest"),),
+    Miss.SLEEP: ("box2d:default-at-rest", "dart:default", "rapier:default-at-rest"),
 }
 """What is missed -> the sources that miss it: all are presets of the libraries' own."""
 

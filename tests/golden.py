@@ -14,7 +14,7 @@ TABLE = __file__.removesuffix("py") + "csv"
 COLUMNS = ["source", "case", "outcome", "peak_ratio", "steps", "events"]
 PEERS = ("rk45", "dop853", "radau", "lsoda")
 OTHERS = ("exact", "housner", "modified", "onset-matched", "rk4", "average-acceleration", *PEERS)
-PRESETS = ("naive", "naive-base-at-rest", "recommended", "fixed", "landing", "error-controlled")
+PRESETS = ("default", "default-at-rest", "recommended", "tuned", "landing", "error-controlled")
 NAMES = ("pybullet", "mujoco", "pymunk", "box2d", "dart", "rapier", "drake", "newton", "physx")
 HERE = [name for name in NAMES if name in installed_engines()]
 

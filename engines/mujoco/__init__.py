@@ -151,7 +151,7 @@ FACTORS = (
 """What its contact can be set to."""
 
 NAIVE = Preset(
-    name="naive", settings=MujocoSettings(), step_s=2e-3, documented=DOCUMENTED, frame="world"
+    name="default", settings=MujocoSettings(), step_s=2e-3, documented=DOCUMENTED, frame="world"
 )
 
 ENGINE = Engine(
@@ -174,7 +174,7 @@ ENGINE = Engine(
             solver="Newton",
             tolerance=1e-10,
         ),
-        Preset(name="fixed", settings=TUNED, step=2.5e-4, stacked=STACKED),
+        Preset(name="tuned", settings=TUNED, step=2.5e-4, stacked=STACKED),
         Preset(
             name="landing",
             settings=LANDING,

@@ -162,7 +162,7 @@ FACTORS = (
 """What its contact can be set to."""
 
 NAIVE = Preset(
-    name="naive",
+    name="default",
     settings=BulletSettings(),
     step_s=LIBRARY_STEP_S,
     documented=DOCUMENTED,
@@ -182,7 +182,7 @@ ENGINE = Engine(
         NAIVE,
         NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, iterations=150, damping=0.0),
-        Preset(name="fixed", settings=TUNED, step=5e-4, stacked=STACKED),
+        Preset(name="tuned", settings=TUNED, step=5e-4, stacked=STACKED),
         Preset(
             name="landing",
             settings=LANDING,

@@ -80,10 +80,10 @@ def _levels(plain: Variant, factor: Factor) -> Iterator[Variant]:
 
 def _exchanged(plain: Variant, factor: Factor) -> Iterator[Variant]:
     """Yield one of the two presets with the other's values of a factor, where these differ."""
-    naive = plain.preset == DEFAULT
+    untuned = plain.preset == DEFAULT
     chosen = [ENGINES[plain.engine].preset(name).settings for name in (DEFAULT, BEST)]
     default, best = ({name: getattr(of, name) for name in factor.settings} for of in chosen)
-    own, wanted = (default, best) if naive else (best, default)
-    if wanted != own and (naive or factor.by_default):
-        level, trap = AS_BEST if naive else BY_DEFAULT, factor.traps.get(plain.preset, "")
+    own, wanted = (default, best) if untuned else (best, default)
+    if wanted != own and (untuned or factor.by_default):
+        level, trap = AS_BEST if untuned else BY_DEFAULT, factor.traps.get(plain.preset, "")
         yield replace(plain, factor=factor.name, level=level, settings=wanted, trap=trap)

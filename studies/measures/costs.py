@@ -20,7 +20,7 @@ LEAST_RUNS, LEAST_S = 5, 0.02
 STEPPED = "A compiled loop over `mj_step` takes MuJoCo's steps; Python takes all others."
 """Said beside times of a step or of a case."""
 OUTDATED = (
-    "PyBullet's published times, but for `naive` and `recommended`, are those of a retired "
+    "PyBullet's published times, but for `default` and `recommended`, are those of a retired "
     "compiled loop, shorter than today's."
 )
 """Said beside them until they are measured again."""

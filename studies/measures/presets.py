@@ -24,12 +24,12 @@ class Look:
 
 
 PRESETS = {
-    "naive": Look("as their documentation shows them", "as documented", "#D55E00", ":", "full"),
+    "default": Look("as their documentation shows them", "as documented", "#D55E00", ":", "full"),
     AT_REST: Look("as documented but on a base at rest", "base at rest", "#E69F00", ":"),
     RECOMMENDED: Look(
         "as their documentation recommends", "as recommended", "#56B4E9", "-.", "bottom"
     ),
-    "fixed": Look("with a tuned contact and a fixed step", "fixed step", "#0072B2", "--", "left"),
+    "tuned": Look("with a tuned contact and a fixed step", "fixed step", "#0072B2", "--", "left"),
     "error-controlled": Look(
         "with the engine's own error-controlled steps", "its own steps", "#CC79A7", "-.", "bottom"
     ),

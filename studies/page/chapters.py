@@ -77,10 +77,10 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part(
             *("presets", "sweep"),
             "Do engines predict them with their default settings, and with tuned ones?",
-            quick=("--figure", "8", "--sources", "exact", "core:naive"),
+            quick=("--figure", "8", "--sources", "exact", "core:default"),
             full=(
-                *("--sources", "exact", "engines:naive", "engines:naive-base-at-rest"),
-                *("engines:recommended", "engines:fixed", "engines"),
+                *("--sources", "exact", "engines:default", "engines:default-at-rest"),
+                *("engines:recommended", "engines:tuned", "engines"),
             ),
             weaker="Figure 8 stands for all four; no tuned preset with a fixed step is asked.",
         ),
@@ -93,7 +93,7 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part("validate", "validate"),
         Part(
             *("estimate", "validate", "How far off is a peak where there is no exact solution?"),
-            always=("--halves", "--sources", "core", "core:fixed", "core:naive"),
+            always=("--halves", "--sources", "core", "core:tuned", "core:default"),
             weaker="So few random cases that no factor has an upper end.",
         ),
     ),
@@ -117,8 +117,8 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part(
             *("defaults", "overturning"),
             "Where do engines predict a wrong overturning with their default settings?",
-            full=("--sources", "engines:naive"),
-            quick=("--quick", "--sources", "core:naive"),
+            full=("--sources", "engines:default"),
+            quick=("--quick", "--sources", "core:default"),
         ),
     ),
     "Other scenes": (Part("scenes", "scenes"),),

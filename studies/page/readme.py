@@ -38,7 +38,7 @@ PAGES = {
 }
 """Page -> its template."""
 BLOCK, PULSE = RigidBlock(width=0.5, height=1.5), SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
-SOURCES = ("exact", "housner", *core_sources("naive"), *core_sources())
+SOURCES = ("exact", "housner", *core_sources("default"), *core_sources())
 
 
 def command(*, root: Path = Path()) -> int:

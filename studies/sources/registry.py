@@ -232,7 +232,7 @@ def core_sources(*presets: str) -> tuple[str, ...]:
 
 
 def expanded(names: Iterable[str]) -> Iterator[str]:
-    """Yield the names with those of engines in place of a group's; "engines:fixed" has a preset.
+    """Yield the names with those of engines in place of a group's; "engines:tuned" has a preset.
 
     Engines of a group that have no such preset are left out, unless none has it.
     """

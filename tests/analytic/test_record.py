@@ -106,7 +106,7 @@ def test_excursions_too_small_to_matter_do_not_matter(seed):
 RECORD = noise(3, 140, 0.02, 1.5 * ONSET)
 KAPPA = 6.0
 BANDS = dict.fromkeys(UNTUNED, 0.6)
-BANDS |= {"fixed": 0.1, "error-controlled": 0.02, "landing": 2e-4, "": 1e-3}
+BANDS |= {"tuned": 0.1, "error-controlled": 0.02, "landing": 2e-4, "": 1e-3}
 """Largest error of a history over its peak, with κ = 6: the library's defaults lose impacts, a
 fixed step of p dt = 5e-4 is of first order in each of the five impacts, an engine that controls
 its error keeps some 4e-4 of a peak at κ = 1, landing steps of 1/200 are of second order, or add up
@@ -115,9 +115,9 @@ the engine's roundings; the paper's solvers end an excursion up to 1e-6 rad late
 
 EACH = [name for name, source in SOURCES.items() if source.kind != "engine"]
 EACH += [f"{name}:{use.name}" for name in installed_engines() for use in ENGINES[name].presets]
-DEAR = "pymunk:fixed"
+DEAR = "pymunk:tuned"
 """It takes as long as all the others together; its other presets stand for it."""
-DRAGGED = "pybullet:naive"
+DRAGGED = "pybullet:default"
 """Its damping of 0.04, in the world's frame, drags a block on a floor of 9 m/s."""
 
 

@@ -23,13 +23,13 @@ SIZE = {"width": 0.5, "height": 1.5}
 def test_a_declaration_is_whole(name):
     engine = ENGINES[name]
     assert engine.name == name
-    assert engine.presets[0].name == "naive"
+    assert engine.presets[0].name == "default"
     assert "step" in [source.setting for source in engine.presets[0].documented]
     assert not engine.presets[0].helped_by
-    naive, bare = engine.presets[0], type(engine.presets[0].settings)()
-    assert all(getattr(naive.settings, name) != value for name, value in naive.own.items())
-    assert replace(bare, **{name: getattr(naive.settings, name) for name in naive.own}) == (
-        naive.settings
+    default, bare = engine.presets[0], type(engine.presets[0].settings)()
+    assert all(getattr(default.settings, name) != value for name, value in default.own.items())
+    assert replace(bare, **{name: getattr(default.settings, name) for name in default.own}) == (
+        default.settings
     )
     for preset in engine.presets:
         assert isinstance(preset.settings.friction, float)
@@ -93,9 +93,9 @@ def test_what_an_engine_does_not_have_is_refused(engine):
     for preset in HERE[engine].presets:
         with pytest.raises(ValueError, match="setting is 'bounce'; it must be one of"):
             rocked(engine, preset=preset.name, settings={"bounce": 1})
-    if HERE[engine].preset("naive").takes(floor="position"):
+    if HERE[engine].preset("default").takes(floor="position"):
         with pytest.raises(ValueError, match="floor is None; it must be one of"):
-            rocked(engine, preset="naive", settings={"floor": None})
+            rocked(engine, preset="default", settings={"floor": None})
     if engine in CORE:
         with pytest.raises(ValueError, match="geometry is 'ball'; it must be one of box, corners"):
             rocked(engine, settings={"geometry": "ball"})

@@ -114,7 +114,7 @@ def test_first_order(engine):
     impacts fall anywhere in their steps."""
     motions = [pulse(1.3, 3.0 + 0.13 * i, 2) for i in range(8)]
     coarse, fine = (
-        sum(error(engine, motion, preset="fixed", step=step) for motion in motions)
+        sum(error(engine, motion, preset="tuned", step=step) for motion in motions)
         for step in (4e-3, 1e-3)
     )
     assert 0.6 < math.log(coarse / fine, 4.0) < 1.6
@@ -138,7 +138,7 @@ CLOSE = {
 @every_fixed_use
 def test_a_fixed_step_is_close_to_the_exact_solution(engine, case):
     block, motion, asked, within = CLOSE[case]
-    exact, response = agreed(engine, motion, system=block, preset="fixed", **asked)
+    exact, response = agreed(engine, motion, system=block, preset="tuned", **asked)
     assert response.crossed == exact.crossed == (case == "crossed and not overturned")
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=within)
     if asked:
@@ -168,7 +168,7 @@ def test_repeats_bit_by_bit(engine, preset):
 @pytest.mark.parametrize("engine", HERE)
 def test_worlds_at_once_do_not_disturb_each_other(engine):
     """Nor take both what an earlier one gave back."""
-    asked = scene(preset="fixed")
+    asked = scene(preset="tuned")
     build(HERE[engine].use(asked)).close()
     first, second = (build(HERE[engine].use(asked)) for _ in range(2))
     before = np.array(second.state())
@@ -220,7 +220,7 @@ def test_a_pivot_lifts_off_where_the_exact_motion_would_have_to_pull(
     block = RigidBlock(width=0.5, height=0.5 * aspect)
     motion = pulse(onsets, omega_over_p, 2, block)
     assert (simulate(block, motion).min_normal > 0.0) is stays
-    found = rocked(engine, motion, system=block, preset="fixed")
+    found = rocked(engine, motion, system=block, preset="tuned")
     assert (found.hop_m < 3e-5 * block.width) is stays
 
 
@@ -230,7 +230,7 @@ def test_a_pivot_slides_where_the_exact_motion_needs_more_friction(engine):
     motion = pulse(1.2, 4.0, 2, block)
     needed = simulate(block, motion).friction_needed
     enough, short = (
-        rocked(engine, motion, system=block, preset="fixed", friction=k * needed)
+        rocked(engine, motion, system=block, preset="tuned", friction=k * needed)
         for k in (1.2, 0.8)
     )
     assert enough.slip_m < 3e-4 * block.width < short.slip_m
@@ -239,6 +239,6 @@ def test_a_pivot_slides_where_the_exact_motion_needs_more_friction(engine):
 @every_fixed_use
 @pytest.mark.parametrize("limit", [{"time_limit_s": 1e-6}, {"max_steps": 9}])
 def test_limits(engine, limit):
-    response = rocked(engine, pulse(1.3, 1.0), preset="fixed", **limit)
+    response = rocked(engine, pulse(1.3, 1.0), preset="tuned", **limit)
     assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.UNDECIDED)
     assert f"{next(iter(limit.values()))}" in response.message

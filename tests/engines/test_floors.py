@@ -22,13 +22,13 @@ LED_M = {"drake": 1e-7, "newton": 1e-6}
 
 @pytest.mark.parametrize("engine", [name for name in LAGS_S if name in HERE])
 def test_the_floor_lags_by_what_holds_it(engine):
-    lag = rocked(engine, preset="naive").observables[LAG]
+    lag = rocked(engine, preset="default").observables[LAG]
     assert lag == pytest.approx(LAGS_S[engine] * FASTEST, rel=WITHIN[engine])
 
 
 @pytest.mark.parametrize("engine", [name for name in LED_M if name in HERE])
 def test_a_floor_that_is_led_is_where_it_should_be(engine):
-    exact, response = agreed(engine, preset="naive", frame="world")
+    exact, response = agreed(engine, preset="default", frame="world")
     assert 0.0 < response.observables[LAG] < LED_M[engine]
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=0.2)
 
@@ -37,6 +37,6 @@ def test_a_floor_that_is_led_is_where_it_should_be(engine):
 @pytest.mark.parametrize("onsets", [0.8, -0.8])
 def test_what_stands_on_a_floor_that_lags_is_at_rest(engine, onsets):
     """A block is seen from where the floor is, not from where it should be."""
-    response = rocked(engine, pulse(onsets, 3.0, 2), preset="naive")
+    response = rocked(engine, pulse(onsets, 3.0, 2), preset="default")
     assert response.outcome is Outcome.AT_REST
     assert response.observables[LAG] > 1e-3

@@ -66,7 +66,7 @@ def test_a_frame_lands_as_a_block(engine, motion, system, within, whole, goes):
 @pytest.mark.parametrize("engine", STACKING)
 def test_a_frame_rocks_at_equal_steps(engine):
     """Where in a step an impact falls costs half a per cent; PyBullet's boxes lose one more."""
-    exact, response = agreed(engine, SINE, system=frame(2.0), preset="fixed")
+    exact, response = agreed(engine, SINE, system=frame(2.0), preset="tuned")
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=1.5e-2)
     assert response.observables["parting"] < 1e-4
 
@@ -80,7 +80,7 @@ def test_a_beam_that_slides_along_its_columns_is_named():
     assert (found.outcome, found.reason) == (Outcome.FAILED, Reason.SLID)
     slid, allowed = re.search(r"the beam slid (\S+) m .* at most (\S+) m", found.message).groups()
     assert float(slid) > float(allowed) == pytest.approx(0.01 * system.width)
-    even = rocked("pybullet", motion, preset="naive", **posed)
+    even = rocked("pybullet", motion, preset="default", **posed)
     assert even.observables["drift_m"] > 0.01 * system.width
     assert "the beam slid" in even.message
 
@@ -91,7 +91,7 @@ def test_a_slide_ends_where_it_should(engine, friction):
     """Tuned engines give up g mu dt^2 of a slip where it starts and stops, dt = 1e-4 s at most, and
     single precision a part 1e-4 of its end."""
     box = SlidingBlock(width=1.0, height=0.5, friction=friction)
-    exact, found = agreed(engine, SINE, system=box, preset="fixed")
+    exact, found = agreed(engine, SINE, system=box, preset="tuned")
     assert found.outcome is Outcome.SLID
     assert found.slips == pytest.approx(exact.slips, abs=5e-4)
 
@@ -99,7 +99,7 @@ def test_a_slide_ends_where_it_should(engine, friction):
 @pytest.mark.parametrize("engine", [name for name in ("pymunk", "pybullet") if name in HERE])
 def test_a_launched_box_stops_and_counts_as_far_as_it_got(engine):
     box = SlidingBlock(width=1.0, height=1.0, friction=0.5)
-    asked = {"system": box, "start": (0.0, 6.0), "preset": "fixed"}
+    asked = {"system": box, "start": (0.0, 6.0), "preset": "tuned"}
     _, found = agreed(engine, Still(), **asked)
     assert found.slips == pytest.approx((36.0 / 9.81,), rel=1e-6)
     assert found.slip_times[0][1] == pytest.approx(12.0 / 9.81, rel=1e-3)
@@ -141,8 +141,8 @@ def test_a_box_that_trembles_where_it_is_is_at_rest():
 
 
 def test_a_plain_name_is_the_best_preset_that_can_be_used_and_says_which():
-    best, fixed = (rocked("pymunk", SINE, system=BOX, preset=preset) for preset in (None, "fixed"))
-    assert best.message == "as pymunk:fixed"
+    best, fixed = (rocked("pymunk", SINE, system=BOX, preset=preset) for preset in (None, "tuned"))
+    assert best.message == "as pymunk:tuned"
     assert best.slips == fixed.slips
     assert not rocked("pymunk").message
 
@@ -159,7 +159,7 @@ def test_columns_keep_to_their_beam_in_mujoco(hard):
     """A top that lets go makes columns part by a tenth and more of alpha, where three can."""
     names = ("aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p", "columns", "load")
     case = RandomFrame(case=0, **dict(zip(names, hard, strict=True)))
-    exact, found = agreed("mujoco", case.motion, system=case.block, preset="fixed")
+    exact, found = agreed("mujoco", case.motion, system=case.block, preset="tuned")
     assert found.observables["parting"] < 1e-6
     assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=5e-3)
 

@@ -19,21 +19,21 @@ OF_ALL = {
     "landing": {},
     "history": {"times": TIMES, "duration": 2.0},
     "released": {"start": (0.5 * BLOCK.alpha, 0.3), **LOOSE},
-    "fixed": {"preset": "fixed", "step": 5e-3},
-    "naive": {"preset": "naive"},
+    "tuned": {"preset": "tuned", "step": 5e-3},
+    "default": {"preset": "default"},
     "moving base": {"frame": "world", **LOOSE},
     "box": {"settings": {"geometry": "box"}, **LOOSE},
     "free body": {"settings": {"planar": False}, **LOOSE},
     "record": {"motion": noise(1, 1200, 0.01, 6.0), **LOOSE},
     "given up": {"max_steps": 300},
     "slides": {"friction": 0.05},
-    "lost": {"motion": SinePulse(amplitude=1e30, omega=1.0), "preset": "fixed"},
+    "lost": {"motion": SinePulse(amplitude=1e30, omega=1.0), "preset": "tuned"},
 }
 WELDED = {"floor": "weld"}
 SCENES = {
     "mujoco": {
         **OF_ALL,
-        "naive at rest": {"preset": AT_REST},
+        "default at rest": {"preset": AT_REST},
         "landing on a welded base": {"frame": "world", "settings": WELDED, **LOOSE},
         "free body on it": {"frame": "world", "settings": {**WELDED, "planar": False}, **LOOSE},
         "no reflection": {"settings": {"reflection": False}, **LOOSE},
@@ -42,13 +42,13 @@ SCENES = {
     },
     "pybullet": {
         **OF_ALL,
-        "naive": {"preset": AT_REST},
+        "default": {"preset": AT_REST},
         "base without velocity": {"settings": {"floor": "position"}, "frame": "world"},
         "same in all phases": {"settings": {"by_phase": False}, **LOOSE},
         "same gap": {"settings": {"gap_by_step": False}, **LOOSE},
-        "naive on a moving base": {"preset": "naive", "settings": {"floor": "velocity"}},
+        "default on a moving base": {"preset": "default", "settings": {"floor": "velocity"}},
         "hull on a box": {
-            "preset": "fixed",
+            "preset": "tuned",
             "settings": {"geometry": "hull", "base_geometry": "box"},
             "step": 5e-3,
         },

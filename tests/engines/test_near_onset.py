@@ -16,8 +16,8 @@ from analytic.response import Outcome
 from engines.declaration import UNTUNED, Stepping
 
 MISSED = {
-    "naive": (0.5, 0.5),  # some lean, or hop, in their contact before the onset
-    Stepping.FIXED: (5e-3, 0.1),
+    "default": (0.5, 0.5),  # some lean, or hop, in their contact before the onset
+    Stepping.FIXED: (2e-4, 0.1),
     Stepping.OWN: (5e-4, 2e-2),
     Stepping.LANDING: (5e-4, 1e-3),
     "physx": (1e-3, 1e-3),  # of a small swing single precision tells less apart
@@ -51,8 +51,10 @@ def test_hardly_above_the_onset(engine, preset, excess, omega, aspect, half_cycl
     response = rocked(engine, motion, system=block, preset=preset, max_steps=MOST)
     assert response.outcome in (Outcome.AT_REST, Outcome.ROCKED), response.message
     use = HERE[engine].preset(preset)
-    kind = "naive" if preset in UNTUNED else use.stepping
+    kind = "default" if preset in UNTUNED else use.stepping
     least, part = MISSED[engine if kind is Stepping.LANDING and engine in MISSED else kind]
+    if kind is Stepping.FIXED and half_cycles == 2:
+        least = 1e-2  # the second excursion follows an impact inside a step: kappa 75 to 260
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=part, abs=least)
 
 

@@ -1,4 +1,4 @@
-"""What is said of the libraries' own defaults is what they report, and naive leaves them so."""
+"""What is said of the libraries' own defaults is what they report, and default leaves them so."""
 
 import importlib
 import math
@@ -142,24 +142,24 @@ READ = {
 @pytest.mark.parametrize("engine", [name for name in READ if name in HERE])
 def test_what_the_table_says_of_a_default_is_what_the_library_reports(engine):
     """Also that a box's friction is not what is set; a squat block would slide at it."""
-    naive, said = HERE[engine].preset("naive"), defaultdict(str)
-    for source in naive.documented:
+    default, said = HERE[engine].preset("default"), defaultdict(str)
+    for source in default.documented:
         said[source.setting] += f" {source.value}"
     read = list(READ[engine](imported(HERE[engine].library)))
     for setting, value in read:
         assert setting == OWN or value in said[setting], (setting, value)
     own = dict(read).get(OWN)
-    assert naive.own == ({} if own is None else {"friction": pytest.approx(own, rel=1e-7)})
-    if naive.own:
+    assert default.own == ({} if own is None else {"friction": pytest.approx(own, rel=1e-7)})
+    if default.own:
         cube = RigidBlock(width=0.5, height=0.5)
         sine = SinePulse.in_g(1.5, omega=8.0, half_cycles=2)
         assert simulate(cube, sine).friction_needed > own
-        slid = rocked(engine, sine, system=cube, preset="naive", settings={"friction": own})
+        slid = rocked(engine, sine, system=cube, preset="default", settings={"friction": own})
         assert slid.reason is Reason.SLID
 
 
 def peak(engine, **settings):
-    return rocked(engine, preset="naive", settings=settings).peak_ratio
+    return rocked(engine, preset="default", settings=settings).peak_ratio
 
 
 FELT = [
@@ -188,7 +188,7 @@ BARE = """<mujoco><worldbody><body name="there" mocap="true"/><body name="here">
 def test_what_naive_pybullet_does_not_set_is_the_library_s_own():
     """Damping cannot be read back: two boxes that fly are slowed alike."""
     p = pytest.importorskip("pybullet")
-    world, bare = build(HERE["pybullet"].use(scene(preset="naive"))), p.connect(p.DIRECT)
+    world, bare = build(HERE["pybullet"].use(scene(preset="default"))), p.connect(p.DIRECT)
     half = (0.5 * BLOCK.width, 0.5 * BLOCK.width, 0.5 * BLOCK.height)
     box = p.createCollisionShape(p.GEOM_BOX, halfExtents=half, physicsClientId=bare)
     body = p.createMultiBody(375.0, box, physicsClientId=bare)
@@ -211,7 +211,7 @@ def test_what_naive_pybullet_does_not_set_is_the_library_s_own():
 
 def test_what_naive_mujoco_does_not_set_is_the_library_s_own():
     mj = pytest.importorskip("mujoco")
-    world = build(HERE["mujoco"].use(scene(preset="naive")))
+    world = build(HERE["mujoco"].use(scene(preset="default")))
     bare, read = mj.MjModel.from_xml_string(BARE), world.model
     for name in dir(bare.opt):
         found = getattr(read.opt, name)

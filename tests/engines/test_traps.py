@@ -51,7 +51,7 @@ TRAPS = {
     ),
     # set by its mass alone, a block keeps the moments of inertia of 1 kg m2 and hardly rocks
     "a mass brings no inertia": (
-        *("dart", {"preset": "naive"}, 0.3),
+        *("dart", {"preset": "default"}, 0.3),
         *({"exact_inertia": False}, 0.8),
     ),
     # in metres a pivot is pushed out of its margin at up to 1 mm/s, in 1e-5 m at 1e-8 m/s
@@ -72,22 +72,22 @@ TRAPS = {
     # it goes by the normal force at the beginning of a step, of which dissipation makes much or
     # nothing; more friction does not hide that
     "friction lags behind what dissipates": (
-        *("drake", {"preset": "fixed"}, 5e-3),
+        *("drake", {"preset": "tuned"}, 5e-3),
         *({"dissipation": 1e4, "friction": NO_JAM}, 0.05),
     ),
     # the library's own hundredth of it in a step is a velocity that grows as the step shrinks
     LONG: (
-        *("newton", of(SQUAT, 1.5, 3.0, 1, preset="fixed", duration=1.0, step=2.5e-4), 1e-3),
+        *("newton", of(SQUAT, 1.5, 3.0, 1, preset="tuned", duration=1.0, step=2.5e-4), 1e-3),
         *({"baumgarte": 0.01}, 0.5),
     ),
     # two corners then correct twice what one would: weighting is what the library does itself
     "corrections without weights are made by each corner": (
-        *("newton", {"preset": "naive"}, 0.01),
+        *("newton", {"preset": "default"}, 0.01),
         *({"weighting": False}, 0.05),
     ),
     # the more of it the shorter the step
     "a depth that is corrected at once is noise": (
-        *("physx", {"preset": "fixed", "step": 2.5e-4}, 2e-3),
+        *("physx", {"preset": "tuned", "step": 2.5e-4}, 2e-3),
         *({"depenetration": None, "contact_offset": None}, 6e-3),
     ),
     "it iterates as slender blocks need": (
@@ -163,8 +163,8 @@ def test_a_recorded_step_of_newton_has_its_length_for_good():
 
 def test_physx_reads_back_what_is_set_for_all_and_what_is_not():
     physx = imported("sapien").physx if "physx" in HERE else pytest.skip("sapien is not installed")
-    asked = {"preset": "fixed", "settings": {"bounce_threshold": 0.01, "units": None}}
-    for options, threshold, sleep in (({"preset": "naive"}, 2.0, 0.005), (asked, 0.01, 0.0)):
+    asked = {"preset": "tuned", "settings": {"bounce_threshold": 0.01, "units": None}}
+    for options, threshold, sleep in (({"preset": "default"}, 2.0, 0.005), (asked, 0.01, 0.0)):
         world = build(HERE["physx"].use(scene(**options)))
         assert world.fault() == ""
         world.close()
@@ -191,12 +191,12 @@ def test_a_block_that_sleeps_is_at_rest_on_its_base_and_has_no_answer_aloft():
     swing to be put to sleep there."""
     pytest.importorskip("rapier3d")
     weak = pulse(0.9, 3.0)
-    rested = rocked("rapier", weak, preset="naive", duration=3.0, times=(3.0,))
+    rested = rocked("rapier", weak, preset="default", duration=3.0, times=(3.0,))
     assert rested.outcome is Outcome.AT_REST
     assert 0.0 < abs(rested.history.theta[-1]) < 1e-3 * BLOCK.alpha
     case = next(case for case in extremes(False) if case.name == "H/B 50")
     asked = {"system": case.block, "duration": case.duration}
-    slept = rocked("rapier", case.motion, preset="naive", **asked)
+    slept = rocked("rapier", case.motion, preset="default", **asked)
     assert slept.outcome is Outcome.FAILED
     assert "to sleep aloft" in slept.message
 
@@ -233,7 +233,7 @@ def test_threads_do_not_disturb_each_other():
         assert list(pool.map(answer, 4 * list(range(6)))) == 4 * alone
 
 
-@pytest.mark.parametrize("wanted", [{"start": (0.5 * BLOCK.alpha, 0.0), "preset": "naive"}, {}])
+@pytest.mark.parametrize("wanted", [{"start": (0.5 * BLOCK.alpha, 0.0), "preset": "default"}, {}])
 def test_nothing_stays_of_any_setting(wanted, bullet):
     """A run in a client that others have used, or in which one failed, is that of a new one."""
 
@@ -241,7 +241,7 @@ def test_nothing_stays_of_any_setting(wanted, bullet):
         return all_but_times(rocked("pybullet", pulse(1.35, 4.0), **wanted))
 
     first = answered()
-    lost = rocked("pybullet", SinePulse(amplitude=1e30, omega=1.0), preset="fixed")
+    lost = rocked("pybullet", SinePulse(amplitude=1e30, omega=1.0), preset="tuned")
     assert lost.outcome is Outcome.FAILED
     for level in chain.from_iterable(factor.levels for factor in HERE["pybullet"].factors):
         for preset in level.presets:

@@ -19,7 +19,7 @@ HERE = {name: engine for name, engine in ENGINES.items() if engine.installed}
 CORE = [name for name in core_engines() if name in HERE]
 USES = [(name, use.name) for name, engine in HERE.items() for use in engine.presets]
 TUNED = [(name, preset) for name, preset in USES if preset not in UNTUNED]
-FIXED = [name for name, preset in USES if preset == "fixed"]
+FIXED = [name for name, preset in USES if preset == "tuned"]
 LANDING = [use for use in USES if HERE[use[0]].preset(use[1]).stepping is Stepping.LANDING]
 
 
@@ -109,7 +109,7 @@ def errors_of_sweep(engine, every, **options):
 
 def take_a_step(world, posed, engine):
     """Take the first of the steps that a fixed preset takes in a scene; return it."""
-    use = HERE[engine].use(replace(posed, preset="fixed"))
+    use = HERE[engine].use(replace(posed, preset="tuned"))
     monitor = Monitor(use.scene, use.dt_s, Stepping.FIXED, Moment.MIDDLE, use.resolution)
     monitor.make_room(1)
     step = monitor.next(world.state())

@@ -58,7 +58,7 @@ def told_by(*commands):
     "arguments",
     [
         ["compare", *CASE, "--json", "--sources", "exact", "housner", "modified"],
-        ["compare", *CASE, "--json", "--sources", "exact", "mujoco:fixed"],
+        ["compare", *CASE, "--json", "--sources", "exact", "mujoco:tuned"],
         ["export", *CASE, "--engine", "mujoco", "--out", "scene"],
     ],
     ids=["models", "engine", "export"],

@@ -116,13 +116,13 @@ ENGINE = Engine(
     build=MoreauWorld,
     presets=(
         Preset(
-            name="naive",
+            name="default",
             title="gaps closed late",
             settings=MoreauSettings(),
             step_s=2e-3,
             documented=(Citation("step", "0.002 s", "a choice of its own"),),
         ),
-        Preset(name="fixed", settings=TUNED, step=2.5e-4),
+        Preset(name="tuned", settings=TUNED, step=2.5e-4),
         Preset(
             name="landing",
             settings=TUNED,

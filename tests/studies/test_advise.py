@@ -89,7 +89,7 @@ def test_a_lucky_step_and_one_with_a_well_conditioned_miss_are_not_advised(lines
 
 def advised(engine):
     """Return the line of advice with an engine's tuned contact at a p dt of 0.01."""
-    line = {"engine": engine, "preset": "fixed", "value": 0.01, "dt_s": 0.01 / BLOCK.p}
+    line = {"engine": engine, "preset": "tuned", "value": 0.01, "dt_s": 0.01 / BLOCK.p}
     return pd.DataFrame([{**line, "message": ""}])
 
 

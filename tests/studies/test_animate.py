@@ -67,7 +67,7 @@ def test_a_verdict_is_given_when_it_happens():
 def test_bodies_are_where_they_are_and_the_exact_outline_is_over_every_other(theta):
     frame = RockingFrame(width=0.5, height=1.5, columns=3, load=2.0)
     rows = [{"source": name, "outcome": "rocked", "theta": np.array([0.0, part * theta])}
-            for name, part in (("exact", 1.0), ("mujoco:naive", 0.5))]  # fmt: skip
+            for name, part in (("exact", 1.0), ("mujoco:default", 0.5))]  # fmt: skip
     stage = Stage(frame, Still(), np.arange(2.0), rows)
     stage.show(1)
     first, second, _ = stage.figure.axes

@@ -43,7 +43,7 @@ ODD_WORDS = """
 9223372036854775808 18446744073709551616 inf -inf nan NaN -0.0 - -- --- --= = --help -h --version
 --out --quick=1 --no-quick . .. / ~ * /nowhere/x /dev/null /dev/full /dev/zero /dev/stdin
 /proc/self/mem PIPE FOLDER RECORD /dev/full/x.png FOLDER/x.png x/y.pdf exact exact: : mujoco:
-mujoco:best core core:naive engines:x EXACT tcp://127.0.0.1:1 tcp:// tls://127.0.0.1:1 http://x
+mujoco:best core core:default engines:x EXACT tcp://127.0.0.1:1 tcp:// tls://127.0.0.1:1 http://x
 127.0.0.1 tcp://[::1]:9 g gal half-sine figure 6 6.0 true None [] {} png
 """
 ODD = [

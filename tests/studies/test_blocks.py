@@ -37,7 +37,7 @@ def read(place):
 
 
 def test_each_block_has_its_answers_and_its_margin(place, capsys):
-    asked = [*ASKED, "--sources", "exact", "housner", "pymunk:naive", "--jobs", "1"]
+    asked = [*ASKED, "--sources", "exact", "housner", "pymunk:default", "--jobs", "1"]
     assert run(asked) == 0
     rows = read(place)
     assert rows["name"].tolist() == [name for name in ("A", "B", "C", "nan") for _ in range(3)]

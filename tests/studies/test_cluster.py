@@ -84,7 +84,7 @@ def station(tmp_path_factory):
 
 
 def test_rows_are_those_of_this_machine_to_the_bit(station):
-    jobs = jobs_of("exact", "rk4", "pybullet", "mujoco", "mujoco:naive")
+    jobs = jobs_of("exact", "rk4", "pybullet", "mujoco", "mujoco:default")
     here, there = (
         pd.DataFrame(dict(rows)).T.sort_index().drop(columns="wall_s")
         for rows in (local(jobs, answer, 1, 60.0), on_cluster(station, 60.0, jobs, answer))
@@ -136,7 +136,7 @@ def test_a_killed_worker_loses_nothing_and_the_last_one_ends_the_run(tmp_path, m
         assert sorted(number for number, _ in got) == list(range(40))
         threading.Timer(1.0, second.kill).start()
         with pytest.raises(BadInputError, match="no worker any more"):
-            list(on_cluster(address, 60.0, jobs_of(*["mujoco:fixed"] * 400), answer))
+            list(on_cluster(address, 60.0, jobs_of(*["mujoco:tuned"] * 400), answer))
 
 
 @pytest.mark.slow

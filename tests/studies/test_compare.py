@@ -142,7 +142,7 @@ def test_a_slide_is_compared(capsys):
     assert exact["outcome"] == found["outcome"] == "slid"
     # a step of 1e-4 s gives up g mu dt^2 of a slip, where it starts and where it stops
     assert found["slips"] == pytest.approx(exact["slips"], abs=1e-4)
-    assert found["message"] == "as pymunk:fixed"
+    assert found["message"] == "as pymunk:tuned"
 
 
 def test_a_frame_is_compared(capsys):
@@ -158,47 +158,48 @@ def test_a_frame_is_compared(capsys):
 
 
 def test_a_floor_that_lags_has_a_column_of_its_own(capsys):
-    asked = [*SHAKEN, "--sources", "exact", "rapier:naive", "pybullet:naive"]
+    asked = [*SHAKEN, "--sources", "exact", "rapier:default", "pybullet:default"]
     code, rows = compared(capsys, *asked)
     assert code == 0
-    assert rows["pybullet:naive"]["floor_lag_m"] > 1e-3 > rows["rapier:naive"]["floor_lag_m"] > 0.0
+    lags = [rows[f"{engine}:default"]["floor_lag_m"] for engine in ("pybullet", "rapier")]
+    assert lags[0] > 1e-3 > lags[1] > 0.0
 
 
 def test_an_engine_is_asked_with_the_friction_and_the_step_that_are_given(capsys):
     own = ["--friction", "0.8", "--dt", "0.002"]
-    code, rows = compared(capsys, *CASE, *own, "--sources", "exact", "mujoco:naive", "rk4")
+    code, rows = compared(capsys, *CASE, *own, "--sources", "exact", "mujoco:default", "rk4")
     assert (code, rows["exact"]["message"]) == (0, "")
     given = {"step": 0.002 * BLOCK.p, "duration": WINDOW}
-    for name, options in (("mujoco:naive", {**given, "friction": 0.8}), ("rk4", given)):
+    for name, options in (("mujoco:default", {**given, "friction": 0.8}), ("rk4", given)):
         answer = respond(name, BLOCK, PULSE, **options)
         assert (rows[name]["peak_ratio"], rows[name]["steps"]) == (answer.peak_ratio, answer.steps)
-    other = respond("mujoco:naive", BLOCK, PULSE, **given)
-    assert other.peak_ratio != rows["mujoco:naive"]["peak_ratio"]
+    other = respond("mujoco:default", BLOCK, PULSE, **given)
+    assert other.peak_ratio != rows["mujoco:default"]["peak_ratio"]
 
 
 @pytest.mark.parametrize(("part", "slides"), [(0.5, True), (1.1, False)])
 def test_the_exact_row_says_where_friction_is_too_low_for_it(part, slides, capsys):
-    given = ["--friction", str(part * NEEDED), "--sources", "exact", "pymunk:fixed"]
+    given = ["--friction", str(part * NEEDED), "--sources", "exact", "pymunk:tuned"]
     code, rows = compared(capsys, *CASE, *given)
     assert (f"{NEEDED:.3g}" in rows["exact"]["message"]) == slides
-    assert ("slid" in rows["pymunk:fixed"]["message"]) == slides
+    assert ("slid" in rows["pymunk:tuned"]["message"]) == slides
     assert code == int(slides)
 
 
 def test_estimates_are_of_half_the_step_where_asked_for(capsys):
-    asked = [*CASE, "--sources", "exact", "mujoco:fixed", "--dt", "0.001", "--estimate"]
+    asked = [*CASE, "--sources", "exact", "mujoco:tuned", "--dt", "0.001", "--estimate"]
     rows = compared(capsys, *asked)[1]
     assert rows["exact"]["estimate"] is None is rows["exact"]["bound"]
-    engine, step = rows["mujoco:fixed"], 0.5e-3 * BLOCK.p
-    finer = respond("mujoco:fixed", BLOCK, PULSE, duration=WINDOW, step=step).peak_ratio
+    engine, step = rows["mujoco:tuned"], 0.5e-3 * BLOCK.p
+    finer = respond("mujoco:tuned", BLOCK, PULSE, duration=WINDOW, step=step).peak_ratio
     assert engine["estimate"] == abs(engine["peak_ratio"] / finer - 1.0) > 0.0
-    assert engine["bound"] == published_trust("mujoco:fixed").factor * engine["estimate"]
-    found = side_by_side(BLOCK, PULSE, ["mujoco:fixed"], dt=0.001, estimate=True).iloc[0]
+    assert engine["bound"] == published_trust("mujoco:tuned").factor * engine["estimate"]
+    found = side_by_side(BLOCK, PULSE, ["mujoco:tuned"], dt=0.001, estimate=True).iloc[0]
     assert [found["estimate"], found["bound"]] == [engine["estimate"], engine["bound"]]
 
 
 def test_side_by_side_is_what_compare_tells(capsys):
-    names = ["exact", "housner", "mujoco:fixed"]
+    names = ["exact", "housner", "mujoco:tuned"]
     _, rows = compared(capsys, *CASE, "--friction", "0.8", "--sources", *names)
     kept = side_by_side(BLOCK, PULSE, (name for name in names), friction=0.8)
     assert list(kept["source"]) == names

@@ -29,7 +29,7 @@ FRAME = RockingFrame(width=0.5, height=1.5, columns=3, load=2.0)
 SLIDE = SlidingBlock(width=1.0, height=0.5, friction=0.2)
 KINDS = {
     "block": {},
-    "floor": {"preset": "naive"},  # on each way to move one that carries
+    "floor": {"preset": "default"},  # on each way to move one that carries
     "record": {"motion": Record(samples=(0.0, 3.0, 4.5, -2.0, -5.0, 1.0, 0.0), dt=0.15)},
     "lifted at once": {"motion": SinePulse(amplitude=4.5, omega=6.0, half_cycles=2, phase=1.5)},
     "released": {"start": (0.1, -0.3)},
@@ -41,7 +41,7 @@ KINDS = {
 LEFT_OUT = {
     ("drake", "slide", "recommended"),  # its solver gives up
     # where Dantzig's solver fails, PGS starts from what is known again by addresses
-    ("dart", "frame", "fixed"),
+    ("dart", "frame", "tuned"),
 }
 QUICK = [("mujoco", "block"), ("mujoco", "frame"), ("pymunk", "slide"), ("pymunk", "floor")]
 SLOW = [(engine, kind) for engine in USES for kind in KINDS if (engine, kind) not in QUICK]
@@ -58,7 +58,7 @@ def scenes_of(engine, kind):
     if kind == "floor":
         levels = ENGINES[engine].presets[0].settings.__dataclass_fields__["floor"]
         floors = set(levels.metadata["allowed"].names) - {"position"}
-        return [scene("naive", settings={"floor": floor}) for floor in sorted(floors)]
+        return [scene("default", settings={"floor": floor}) for floor in sorted(floors)]
     presets = [preset for preset in USES[engine] if (engine, kind, preset) not in LEFT_OUT]
     return [scene(preset, **KINDS[kind]) for preset in presets]
 
@@ -89,7 +89,7 @@ def test_exported_scenes_find_alone_what_the_runs_do(engine, kind, tmp_path):
 
 
 def test_a_script_runs_from_any_folder_and_tells_versions_and_another_peak(tmp_path):
-    asked = scene("fixed", step=5e-3)
+    asked = scene("tuned", step=5e-3)
     peak = run("pymunk", asked).peak_ratio
     script = write(tmp_path / "right", "pymunk", asked, peak)
     (tmp_path / "ground.py").write_text("raise ImportError('the ground of another folder')")
@@ -148,8 +148,8 @@ def test_a_file_that_cannot_be_written_leaves_no_part_of_a_script(tmp_path, monk
 
 def test_a_scene_is_exported_with_a_friction_and_a_step(tmp_path, capsys):
     own = ("--friction", "0.8", "--dt", "0.002")
-    row = compared(capsys, *CASE, *own, "--sources", "mujoco:naive")[1]["mujoco:naive"]
-    place = ["--engine", "mujoco:naive", "--out", str(tmp_path / "scene")]
+    row = compared(capsys, *CASE, *own, "--sources", "mujoco:default")[1]["mujoco:default"]
+    place = ["--engine", "mujoco:default", "--out", str(tmp_path / "scene")]
     assert rocking(["export", *CASE, *own, *place]) == 0
     told = float(re.search(r"to expect: (\S+)", capsys.readouterr().out)[1])
     assert told == pytest.approx(row["peak_ratio"], rel=1e-11)

@@ -65,10 +65,10 @@ def test_squat_blocks_lift_off_and_slender_ones_do_not():
 
 
 def test_engines_are_asked_on_planes_alone_and_beside_maps_of_models():
-    alone = overturning.jobs(("mujoco:naive",), True, Options())
-    assert {job.source for job in alone} == {"exact", "mujoco:naive"}
+    alone = overturning.jobs(("mujoco:default",), True, Options())
+    assert {job.source for job in alone} == {"exact", "mujoco:default"}
     assert all("width_m" in job.labels for job in alone)
-    both = overturning.jobs(("housner", "mujoco:naive"), True, Options())
+    both = overturning.jobs(("housner", "mujoco:default"), True, Options())
     assert [job.source for job in both[:2]] == ["exact", "housner"]
     assert [job.key for job in both[2:]] == [job.key for job in alone]
 
@@ -80,7 +80,7 @@ def exact():
 
 
 def test_each_kind_of_wrong_outcome_on_planes_is_counted(exact):
-    engine = exact.assign(source="mujoco:naive")
+    engine = exact.assign(source="mujoco:default")
     rows = overturning.with_verdicts(pd.concat([exact, engine], ignore_index=True))
     counted = (rows["verdict"] == "right") & (rows["source"] != "exact")
     assert 10 < counted.sum() < len(engine)

@@ -37,7 +37,7 @@ def test_closed_streams_change_no_exit_code_and_no_result(tmp_path):
 
     done = python("-m", "studies", "compare", "--width", "0", before=close)
     assert (done.returncode, done.stdout, done.stderr) == (2, "", "")
-    asked = ["validate", "--sources", "exact", "mujoco:fixed", "--cases", "5"]
+    asked = ["validate", "--sources", "exact", "mujoco:tuned", "--cases", "5"]
     done = python("-m", "studies", *asked, "--out", tmp_path / "out", before=close)
     assert done.returncode == 0
     assert len((tmp_path / "out" / "errors.csv").read_text().splitlines()) == 11

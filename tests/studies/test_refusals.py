@@ -45,16 +45,19 @@ animate --width 200.001 --height 1.5 PULSE --out film.gif | at most 200, in metr
 advise --width 0.5 --height 300 | --height is 300; it must be at most 200
 
 # who is asked
-compare CASE --sources mujoco:best | --sources | 'mujoco:best' | naive
-compare CASE --sources mujoco:fixd | 'mujoco:fixd', perhaps 'mujoco:fixed'; it must be one of mujoco
+compare CASE --sources mujoco:best | --sources | 'mujoco:best' | default
+compare CASE --sources mujoco:tunde | 'mujoco:tunde', perhaps 'mujoco:tuned'; it must be one of
+compare CASE --sources mujoco:fixed | 'mujoco:fixed', now 'mujoco:tuned'
+compare CASE --sources engines:naive | now 'pybullet:default'
+export CASE --out DIR --engine pybullet:naive | its preset must have equal steps: default
 compare CASE --sources mujuco | 'mujuco', perhaps 'mujoco'; it must be one of exact
-compare CASE --sources MuJoCo:fixed | 'MuJoCo:fixed', perhaps 'mujoco'
-compare CASE --sources hausner:fixed | source is 'hausner:fixed', perhaps 'housner'
-compare CASE --sources exact:fixed | 'exact:fixed'; it must be 'exact'
+compare CASE --sources MuJoCo:tuned | 'MuJoCo:tuned', perhaps 'mujoco'
+compare CASE --sources hausner:tuned | source is 'hausner:tuned', perhaps 'housner'
+compare CASE --sources exact:tuned | 'exact:tuned'; it must be 'exact'
 compare CASE --sources exact --step 0.1 | --step is 0.1 | a solver or an engine
-compare CASE --sources mujoco:fixed --accuracy tight | --accuracy is tight | chooses its steps
+compare CASE --sources mujoco:tuned --accuracy tight | --accuracy is tight | chooses its steps
 contact --out DIR --engines mujuco | --engines is 'mujuco', perhaps 'mujoco'
-export CASE --out DIR --engine mujuco:fixed | perhaps 'mujoco'
+export CASE --out DIR --engine mujuco:tuned | perhaps 'mujoco'
 score mujuco --out DIR | ENGINE is 'mujuco', perhaps 'mujoco'
 contact --out DIR --sources exact | --sources is no option of contact; it takes --out, --engines
 compare CASE --sources exact exact | --sources names 'exact' twice | once
@@ -101,7 +104,7 @@ advise --engine pybullet --friction 99 | friction is 99.0; it must be from 0
 
 # other scenes, exported or shown
 export CASE --out DIR --engine bullet | --engine is 'bullet', perhaps 'pybullet'; it must be
-export CASE --out DIR --engine mujoco:landing | its preset must have equal steps: naive, naive-base
+export CASE --out DIR --engine mujoco:landing | its preset must have equal steps: default, default
 export CASE --out DIR --engine mujoco --scene frame --load 2 --columns 1 | columns is 1; it must be
 compare CASE --scene frame --load 2 --columns 100000 | columns is 100000; it must be a whole number
 animate CASE --out film.gif --scene frame | --load missing
@@ -132,7 +135,7 @@ restitution --out DIR --quick | --quick
 validate --out DIR --halves --sources exact | 'exact'; with --halves it must be an engine
 validate --out DIR --halves --sources drake | steps that can be halved
 validate --out DIR --sources exact --step 0.1 | --sources must name a solver or an engine
-validate --out DIR --dt 0.01 --step 0.1 --sources mujoco:fixed | --dt is 0.01 and --step is 0.1
+validate --out DIR --dt 0.01 --step 0.1 --sources mujoco:tuned | --dt is 0.01 and --step is 0.1
 validate --out DIR --scene slide | among block, frame
 validate --out DIR --seed -1 | --seed is '-1'
 
@@ -248,5 +251,5 @@ def test_accuracy_and_step_reach_only_the_sources_they_are_for():
     effort = Effort(step=1e-3, accuracy="tight")
     assert effort.options("exact") == {}
     assert effort.options("rk4") == {"step": 1e-3}
-    assert effort.options("pybullet:fixed") == {"step": 1e-3}
+    assert effort.options("pybullet:tuned") == {"step": 1e-3}
     assert effort.options("mujoco") == {"step": 1e-3, "accuracy": "tight"}

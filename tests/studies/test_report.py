@@ -65,7 +65,7 @@ def test_a_page_has_a_tile_for_each_preset_and_cases_to_try(tmp_path, monkeypatc
     page.write_page(tmp_path / "report.html", PUBLISHED, full=True)
     tiles, _, rest = (tmp_path / "report.html").read_text().partition('id="try-cases">')
     assert tiles.count("MuJoCo") == 1 and " cases: wrong outcomes" in tiles
-    assert "mujoco:naive" in json.loads(rest.partition("</script>")[0])["peaks"]
+    assert "mujoco:default" in json.loads(rest.partition("</script>")[0])["peaks"]
 
 
 def test_the_page_holds_all_it_shows(made):
@@ -88,11 +88,11 @@ def test_the_engines_answers_are_those_of_the_tables():
     held = engine_cases(PUBLISHED)
     assert next(iter(held["peaks"])) == "exact"
     rows = pd.read_csv(PUBLISHED / "defaults" / "defaults.csv")
-    cases = rows[rows["source"] == "mujoco:naive"].reset_index(drop=True)
+    cases = rows[rows["source"] == "mujoco:default"].reset_index(drop=True)
     shown = dict(
         zip(
             itertools.product(*(held[name] for name in AXES)),
-            held["peaks"]["mujoco:naive"],
+            held["peaks"]["mujoco:default"],
             strict=True,
         )
     )

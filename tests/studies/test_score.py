@@ -35,7 +35,7 @@ MINE = "my_engine:World"
     ("place", "message"),
     [
         ("nothing", "ENGINE is 'nothing'; it must be one of pybullet, mujoco"),
-        ("pymunk:fixd", "preset of pymunk is 'fixd', perhaps 'fixed'; it must be one of naive"),
+        ("pymunk:tuend", "preset of pymunk is 'tuend', perhaps 'tuned'; it must be one of default"),
         ("no_such_module:ENGINE", "No module named 'no_such_module'"),
         ("my_engine:Wheel", "has no attribute 'Wheel'"),
         (":World", "it must be like my_package.mine:ENGINE"),
@@ -56,8 +56,8 @@ def test_quick_asks_a_part_of_every_preset():
     counts = Counter(job.labels["part"] for job in quick)
     assert counts[SWEEP] == 3 * len(range(0, 480, 11))
     assert min(counts.values()) > 0 and len(counts) == 4
-    assert {job.source.partition(":")[2] for job in quick} == {"naive", "fixed", "landing"}
-    assert {job.source for job in score.jobs(["moreau:fixed"], True)} == {"moreau:fixed"}
+    assert {job.source.partition(":")[2] for job in quick} == {"default", "tuned", "landing"}
+    assert {job.source for job in score.jobs(["moreau:tuned"], True)} == {"moreau:tuned"}
 
 
 def test_each_table_has_its_rows_with_its_own_columns(few):
@@ -112,10 +112,10 @@ def test_the_page_the_result_and_what_moved_since(alone, few, tmp_path, capsys):
 
 def test_what_moved_is_beyond_noise():
     peaks = {"same": 0.5, "noise": 0.5, "little": 0.5, "more": 0.5, "fell": 0.5, "rose": "slid"}
-    then = {"versions": {"engine": "1.0"}, "peaks": {"fixed": {**peaks, "gone": 1.0}, "old": peaks}}
+    then = {"versions": {"engine": "1.0"}, "peaks": {"tuned": {**peaks, "gone": 1.0}, "old": peaks}}
     moved = {"noise": 0.5 * (1 + 9e-7), "little": 0.5 * (1 + 2e-6), "more": 0.3}
     moved |= {"fell": "overturned", "rose": 0.25, "new": 1.0}
-    _, other, most = since(then, {"peaks": {"new": peaks, "fixed": peaks | moved}}).split("\n\n")
+    _, other, most = since(then, {"peaks": {"new": peaks, "tuned": peaks | moved}}).split("\n\n")
     outcomes = [line.split()[1:] for line in other.splitlines()]
     assert outcomes[0] == ["case", "then", "now"]
     assert outcomes[1:] == [["fell", "0.5", "overturned"], ["rose", "slid", "0.25"]]
@@ -130,7 +130,7 @@ def test_what_is_no_earlier_result_is_refused(tmp_path, capsys, monkeypatch):
     kept = {"schema": 1, "engine": "mujoco", "versions": {}, "presets": {}, "peaks": {}}
     other = (
         *({"schema": 2}, {"engine": "pymunk"}, {"versions": 1}, {"peaks": [1.0]}),
-        *({"peaks": {"fixed": value}} for value in (1.0, {"a case": [1.0]}, {"a case": 10**400})),
+        *({"peaks": {"tuned": value}} for value in (1.0, {"a case": [1.0]}, {"a case": 10**400})),
     )
     path = tmp_path / "before.json"
     broken = ("[", "[" * 10**5, "[]", "5", "null", "{}", '"schema engine"', "\0", "")
@@ -163,7 +163,7 @@ ENGINES_HERE = [
 def test_no_engine_is_accused(name):
     assert problem_of(name) == ""
     # what takes n steps within a step has its velocity at 1 - 1/2n: Rapier's own settings take 4, 8
-    substeps = {"rapier:naive": 4, "rapier:naive-base-at-rest": 4, "rapier:recommended": 8}
+    substeps = {"rapier:default": 4, "rapier:default-at-rest": 4, "rapier:recommended": 8}
     for use in map(resolve, uses_of(name)):
         if use.used.stepping is not Stepping.OWN:
             lag = 0.5 - 0.5 / substeps.get(f"{name}:{use.preset}", 1)

@@ -54,8 +54,8 @@ def test_boundary_lies_between_its_two_cases(name):
     ("case", "source", "asked"),
     [
         ("friction 1", "exact", False),
-        ("friction 1", "mujoco:naive", True),
-        ("contact of 1e-5/p", "mujoco:naive", False),
+        ("friction 1", "mujoco:default", True),
+        ("contact of 1e-5/p", "mujoco:default", False),
         ("η 0.999, set", "pybullet", False),
         ("η 0.999, set", "dop853", True),
         ("step 1/30 s", "dop853", False),
@@ -67,7 +67,7 @@ def test_cases_are_asked_of_those_who_have_what_is_extreme(case, source, asked):
 
 
 def test_a_case_becomes_options_of_an_engine():
-    assert named("friction 1e9").options("pybullet:naive")["friction"] == 10.0  # Bullet's largest
+    assert named("friction 1e9").options("pybullet:default")["friction"] == 10.0  # Bullet's largest
     assert named("friction 1e9").options("mujoco")["friction"] == 1e9
     settings = SPRINGS["mujoco"](0.01, 0.0025)
     assert settings == {"stiffness": 0.0625, "damping": 0.5}
@@ -127,7 +127,7 @@ def test_edge_is_found_within_its_factor(limit):
 
 
 def test_largest_stable_step_has_the_right_outcome_and_the_next_has_not():
-    (row,) = rows_of("steps", "peak after an impact", "mujoco:fixed")
+    (row,) = rows_of("steps", "peak after an impact", "mujoco:tuned")
     for factor, stable in ((1.0, True), (row["factor"], False)):
         step = factor * row["largest_stable"]
         outcome = resolve(row["source"]).call(CASE.block, CASE.motion, step=step).outcome
@@ -150,7 +150,7 @@ def test_tables_and_what_they_say():
     assert tables["steps"]["largest_stable"].tolist() == [rows[2]["largest_stable"]]
     assert "1 of 2" in stability.finding(tables)
     words = {
-        "pybullet:naive": ["off", "no_answer", "good", "invalid"],
+        "pybullet:default": ["off", "no_answer", "good", "invalid"],
         "mujoco": ["good", "good", "unseen", "invalid"],
         "pymunk": ["good", "coarse"],
     }
@@ -159,7 +159,7 @@ def test_tables_and_what_they_say():
     )
     scores = stability.by_preset(matrix).set_index("preset")
     # what goes unseen is not right, what is invalid not counted
-    assert scores.loc["naive"].tolist() == [1, 1, 3]
+    assert scores.loc["default"].tolist() == [1, 1, 3]
     assert scores.loc["landing"].tolist() == [2, 3, 5]
     assert "33 %" in stability.finding({"stability": matrix})
     assert "60 %" in stability.finding({"stability": matrix})

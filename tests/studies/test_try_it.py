@@ -64,7 +64,7 @@ def test_the_page_solves_the_exact_equations(case):
     assert shown / block.alpha == pytest.approx(right.history.theta / block.alpha, abs=TOLERANCE)
 
 
-@pytest.mark.parametrize("source", ["exact", "mujoco:naive"])
+@pytest.mark.parametrize("source", ["exact", "mujoco:default"])
 def test_the_commands_of_the_page_ask_what_it_shows(source, capsys, tmp_path):
     engine, write = quickjs.Context(), str(source != "exact").lower()
     engine.eval(SCRIPT)

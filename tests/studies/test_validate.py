@@ -114,9 +114,9 @@ def job(source, **options):
     return Job(labels={}, case=Question(system=BLOCK, motion=PULSE), source=source, options=options)
 
 
-@pytest.mark.parametrize("source", [*core_sources("", "naive"), "pymunk:fixed"])
+@pytest.mark.parametrize("source", [*core_sources("", "default"), "pymunk:tuned"])
 def test_half_the_step_takes_about_twice_the_steps(source):
-    asked = job(source) if source.endswith("naive") else job(source, step=0.02)
+    asked = job(source) if source.endswith("default") else job(source, step=0.02)
     finer = halved(asked)
     assert finer.options["step"] == 0.5 * step_of(asked)
     whole, half = (respond(j.source, BLOCK, PULSE, **j.options).steps for j in (asked, finer))
@@ -136,7 +136,7 @@ def estimated(errors, differences, use=CALIBRATE):
     exact = respond("exact", BLOCK, PULSE).peak_ratio
     posed = {"aspect": 3.0, "half_cycles": 2, "amplitude_g": PULSE.amplitude / BLOCK.gravity}
     rows = [
-        {"case": case, "source": "mujoco:naive", **posed, "omega_over_p": PULSE.omega / BLOCK.p}
+        {"case": case, "source": "mujoco:default", **posed, "omega_over_p": PULSE.omega / BLOCK.p}
         | {"outcome": "rocked", "peak_ratio": ratio, "half": half, "set": use}
         for case, (error, difference) in enumerate(zip(errors, differences, strict=True))
         for half, ratio in enumerate(
