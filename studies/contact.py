@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from itertools import islice
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import Annotated, cast
 
 import numpy as np
 import pandas as pd
 from cyclopts import Parameter
 
 from analytic import conditioning
+from analytic.block import Rocker
 from analytic.frame import RockingFrame
 from analytic.response import Outcome
 from engines import ENGINES, core_engines
@@ -25,16 +26,11 @@ from studies.cases.variants import Variant, variants
 from studies.kit.arguments import Engines, one_of
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import out_of, part
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.measures.differences import WELL_CONDITIONED, with_reference
 from studies.measures.energy import SAMPLES, growth
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
 from studies.sources.registry import resolve
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from analytic.block import Rocker
 
 KEY = ["engine", "preset", "factor", "level"]
 """Columns that tell one variant from another."""
@@ -137,7 +133,7 @@ def measure(job: Job) -> Row:
     Of a frame the velocity ratio implies no e of a single corner.
     """
     response, motion = ask(job), job.case.motion
-    system = cast("Rocker", job.case.system)
+    system = cast(Rocker, job.case.system)
     least = 0.1 * system.p * system.alpha  # slower impacts show no velocity ratio
     strong = [each.ratio for each in response.impacts if abs(each.velocity_before) > least]
     known = strong and response.outcome is not Outcome.FAILED
@@ -235,7 +231,7 @@ def finding(tables: Tables) -> str:
     )
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return what each tuned setting costs at its default, the presets, and the traps."""
     lines = tables["variants"]
     plain = lines["factor"] == ""
@@ -253,7 +249,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     }
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw the variants that matter most, a panel for each engine."""
     from studies.drawing.contact import draw_contact
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 import pandas as pd
@@ -16,12 +15,9 @@ from studies.kit.arguments import figures as some_figures
 from studies.kit.arguments import sources_option
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import capital, out_of
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.measures.claims import claim, table_of
 from studies.measures.samples import samples
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 LINEAR = ("exact", "housner", "modified")
 DRAWN = {2: ("exact", "rk4", "average-acceleration"), 4: LINEAR, 5: LINEAR}
@@ -101,13 +97,13 @@ def finding(tables: Tables) -> str:
     return f"{capital(held)} statements of the paper about its time histories hold."
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return the paper's statements, and the largest rotation of each line."""
     peaks = tables["histories"][["figure", "panel", "source", "outcome", "peak_ratio"]]
     return {"The paper's statements": tables["findings"], "Largest rotations": peaks}
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw each figure; where lines coincide, also what separates them."""
     from studies.drawing.figures import draw_histories
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cache
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -17,12 +15,9 @@ from analytic.motion import SinePulse
 from studies.cases.paper import PULSES, sweep_cases
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import out_of, part
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.measures.claims import Finding, table_of
 from studies.measures.differences import posed_cases
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 NAMED = {"000": "housner", "100": "onset-matched", "111": "modified"}
 """Which of onset, frequency and saddle are changed from Housner's -> the model's name."""
@@ -141,13 +136,13 @@ def finding(tables: Tables) -> str:
     )
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return the paper's conclusions, and a line for each variant."""
     lines = tables["linearizations"][["grid", "title", "cases", *WRONG, *ERRORS]]
     return {"What the paper concludes": tables["findings"], "On each grid": lines}
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw the median errors over the slenderness."""
     from studies.drawing.linearizations import draw_errors
 

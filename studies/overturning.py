@@ -7,10 +7,10 @@ similarity makes alike.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from itertools import product
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -25,13 +25,10 @@ from studies.cases.window import LEAST_ONSETS, Window, pulse_of
 from studies.kit.arguments import Positive, as_bad_input
 from studies.kit.jobs import Job, Question, Row, answer
 from studies.kit.say import part
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.measures.presets import titled
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, kinds_of
 from studies.sources.registry import resolve
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 WINDOW = [item.name for item in fields(Window)]
 FORCES = ["omega_over_p", "onsets", "outcome", "min_normal", "friction_needed"]
@@ -257,7 +254,7 @@ def finding(tables: Tables) -> str:
     return " ".join(said) or "Exact maps the plane alone."
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return the short tables beside the finding."""
     found = {}
     if "map" in tables:
@@ -275,7 +272,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     return found
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw the map, and what is wrong on it; and the planes."""
     from studies.drawing import overturning as drawing
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -20,7 +20,7 @@ from engines.declaration import Engine
 from studies.cases.paper import HISTORIES, Case, chosen_cases, free_rocking_window
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import duration, part
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.measures.costs import (
     EXACT,
     best_of,
@@ -33,9 +33,6 @@ from studies.measures.costs import (
 from studies.measures.presets import engine_of, uses_of
 from studies.measures.published import TARGETS
 from studies.sources.registry import core_sources
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 ALONG, SCENES = "precision", "scenes"
 """The tables whose rows are measured."""
@@ -328,7 +325,7 @@ def finding(tables: Tables) -> str:
     )
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return what each error costs, and what a scene costs."""
     table, scenes = tables["work-precision"], tables[SCENES]
     typical = table[table["set"] == TYPICAL]
@@ -352,7 +349,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     return {title: table for title, table in found.items() if len(table)}
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw error against run time."""
     from studies.drawing.precision import draw_precision
 

@@ -10,10 +10,10 @@ corner leaves the base upwards as long as sin(alpha)^2 < 2/3, so that there is n
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import pandas as pd
 from cyclopts import Parameter
@@ -28,11 +28,8 @@ from studies.cases.ways import WAYS, WITHOUT
 from studies.kit.arguments import Engines
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import capital, one_line, out_of
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.sources.registry import scene_of
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 VARIED = {
     "p_dt": (1e-3, 1e-4, 4e-3),
@@ -198,7 +195,7 @@ def finding(tables: Tables) -> str:
     )
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return the deviations of each way, and what it sets."""
     corners = tables["corners"]
     return {
@@ -209,7 +206,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     }
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw the strikes of each engine's plainest and best way."""
     from studies.drawing.restitution import draw_strikes
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 from importlib.metadata import packages_distributions
 from json import dumps, loads
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 import pandas as pd
@@ -37,16 +37,13 @@ from studies.kit.jobs import Job, Row, answer
 from studies.kit.options import Running
 from studies.kit.say import in_columns, one_line, out_of, part
 from studies.kit.store import project_version
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.kit.tables import write_text
 from studies.measures.costs import joint
 from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import preset_of
 from studies.measures.verdicts import Verdict
 from studies.sources.registry import Source, announce, presets_of, resolve, scene_of
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SWEEP, STEPS, EXTREMES, SCENES = (
     f"score-{name}" for name in ("sweep", "steps", "extremes", "scenes")
@@ -150,7 +147,7 @@ def finding(tables: Tables) -> str:
     )
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return its errors, its verdicts and failures."""
     extremes, along = tables[EXTREMES], precision.work_precision(tables[STEPS])
     return {
@@ -168,7 +165,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     }
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw the errors of its presets over their run times, and the matrix of extreme cases."""
     from studies.drawing.precision import draw_precision
     from studies.drawing.stability import draw_matrix

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,14 +15,11 @@ from analytic.response import Response
 from studies.cases.extreme import Extreme, extremes
 from studies.kit.jobs import Job, Question, Row, ask, summary, unanswered
 from studies.kit.say import out_of, part
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.measures.energy import SAMPLES
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, ENERGY_BAND, Verdict, judge
 from studies.sources.registry import core_sources, resolve
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SOLVERS = ("rk4", "average-acceleration", "dop853", "radau")
 METHODS = ("exact", *SOLVERS, *core_sources("", "tuned", "default"))
@@ -187,7 +184,7 @@ def finding(tables: Tables) -> str:
     return f"{words}, {best} {in_words(last['preset'])}." if first != last else f"{words}."
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return scores by preset, verdicts, failures, and the largest steps."""
     matrix, steps = tables["stability"], tables["steps"]
     doubtful = matrix.loc[matrix["verdict"] == Verdict.INVALID.value, ["case", "invalid"]]
@@ -200,7 +197,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     }
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw the matrix of cases and methods."""
     from studies.drawing.stability import draw_matrix
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 from cyclopts import Parameter
@@ -15,15 +15,12 @@ from studies.kit.arguments import figures as some_figures
 from studies.kit.jobs import Job, Question
 from studies.kit.options import EffortOptions
 from studies.kit.say import capital, out_of, part
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.measures.claims import Finding, claim, table_of
 from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.wrongness import KINDS
 from studies.sources.registry import core_sources
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @Parameter(name="*")
@@ -116,7 +113,7 @@ def finding(tables: Tables) -> str:
     )
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return a line for each source, and the paper's conclusions."""
     columns = ["source", "cases", "agree", *KINDS, "median_error", "p90_error", "max_error"]
     return {
@@ -125,7 +122,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     }
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw figures 6 to 9 of a few sources; engines with several presets as an overview."""
     from studies.drawing.sweep import draw_overview, draw_sweep
 

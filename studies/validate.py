@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import islice
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 import pandas as pd
@@ -21,7 +21,7 @@ from studies.kit.arguments import Count, one_of, refuse_both
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.options import EffortOptions, Yours
 from studies.kit.say import out_of, part
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.measures.differences import (
     WELL_CONDITIONED,
     sensitivity_of,
@@ -39,9 +39,6 @@ from studies.measures.halving import (
 from studies.measures.presets import titled
 from studies.measures.wrongness import counted, wrong_in
 from studies.sources.registry import core_sources
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 CASES = {False: (500, 100), True: (300, 20)}
 TESTS = (100, 10)
@@ -168,7 +165,7 @@ def finding(tables: Tables) -> str:
     return f"{titled(best)} predicts the outcome of {right} random cases{within}{other}."
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return the lines of each source, and what was drawn."""
     if "factors" in tables:
         return {"Estimates, errors, and the factors between them": tables["factors"]}
@@ -192,7 +189,7 @@ def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(lines)
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw the errors in bands of the sensitivity, or the errors over their estimates."""
     from studies.drawing.validate import draw_conditioning, draw_estimates
 

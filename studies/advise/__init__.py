@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from textwrap import fill, indent
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import pandas as pd
 from cyclopts import Parameter
@@ -31,15 +31,12 @@ from studies.kit.options import Running
 from studies.kit.say import WIDTH, as_text, duration
 from studies.kit.scene_options import Height, Width, block_of
 from studies.kit.store import check
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.measures import published as known
 from studies.measures.costs import OUTDATED, STEPPED, cheapest_kept
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.presets import look_of, uses_of
 from studies.measures.published import PUBLISHED, TARGETS, options_at
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 TABLES = (known.LADDER, *known.PAPER, known.RANDOM)
 NONE_FOUND: Row = {
@@ -191,7 +188,7 @@ def finding(tables: Tables) -> str:
     )
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return the cheapest settings that keep each error, and what no setting keeps."""
     if "symptoms" in tables:
         return seen.shown(tables["symptoms"])
@@ -210,7 +207,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     }
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw the time of a case with each preset that keeps an error."""
     from studies.drawing.advise import draw_advice
 

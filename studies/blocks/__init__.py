@@ -10,7 +10,7 @@ from dataclasses import asdict
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple, cast
+from typing import Annotated, NamedTuple, cast
 
 import numpy as np
 import pandas as pd
@@ -32,12 +32,9 @@ from studies.kit.options import Running
 from studies.kit.say import capital, out_of
 from studies.kit.scene_options import refuse_endless
 from studies.kit.store import provenance_of
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.kit.tables import write_text
 from studies.measures.presets import is_engine
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 APART = 0.01
 """Relative distance of two factors."""
@@ -210,7 +207,7 @@ def finding(tables: Tables) -> str:
     )
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return the factors and answers of each block and record."""
     rows = tables["blocks"]
     peak = rows["peak_ratio"].map(" {:.4g}".format).where(rows["outcome"] == "rocked", "")
@@ -222,7 +219,7 @@ def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
     return {title: ranked(rows)[[*PAIR, *facts]].merge(answers, on=PAIR)}
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw the ranking of the blocks."""
     from studies.drawing.blocks import draw_blocks
 

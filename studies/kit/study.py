@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 Tables: TypeAlias = "Mapping[str, pd.DataFrame]"
 """Tables by the names of their files, without .csv."""
+Figures: TypeAlias = "Mapping[str, Figure]"
+"""Figures by the names of their files."""
 
 
 def _nothing(tables: Tables) -> Mapping[str, Any]:
@@ -50,7 +52,7 @@ class Study:
     tabulate: Callable[[pd.DataFrame], Tables]  # of its rows
     finding: Callable[[Tables], str]  # what its tables show, in a sentence
     shown: Callable[[Tables], Tables] = _nothing  # short tables beside the finding, by their titles
-    figures: Callable[[Tables], Mapping[str, Figure]] = _nothing  # by the names of their files
+    figures: Callable[[Tables], Figures] = _nothing
     captions: Mapping[str, str] = field(default_factory=dict)  # by the beginning of a figure's name
     needed: Callable[[Sequence[Row]], Sequence[Row]] = tuple  # rows whose failure is the study's
     texts: tuple[str, ...] = ()  # columns of words that may look like numbers
