@@ -164,7 +164,8 @@ class Preset:
         values from cheap to dear
     helped_by : what helps -> the settings that leave it out; None where it is the preset itself
     stacked : settings in place of some of these where bodies rest on others; None where none can
-    stacks : builds such a scene, in place of the engine's build
+    sliding : settings in place of some of these where nothing rocks
+    stacks : builds a scene of bodies that rest on others, in place of the engine's build
     own : of "default", settings that are not the library's own -> what it has by itself
     """
 
@@ -179,6 +180,7 @@ class Preset:
     accuracy_knob: tuple[str, tuple[float, ...]] | None = None
     helped_by: Mapping[Help, Mapping[str, Any] | None] = field(default_factory=dict)
     stacked: Mapping[str, Any] | None = field(default_factory=dict)
+    sliding: Mapping[str, Any] = field(default_factory=dict)
     stacks: Builder | None = None
     own: Mapping[str, Any] = field(default_factory=dict)
 
@@ -292,7 +294,7 @@ class Engine:
         names = [item.name for item in fields(preset.settings)]
         for name in scene.settings:
             one_of("setting", name, names)
-        stacked = (scene.stacked and preset.stacked) or {}
+        other = preset.stacked if scene.stacked else {} if scene.layout.rocking else preset.sliding
         given = {} if scene.friction is None else {"friction": scene.friction}
         if scene.step is not None:
             dt_s = scene.step / scene.system.p
@@ -304,7 +306,7 @@ class Engine:
             self,
             preset,
             scene if scene.frame else replace(scene, frame=preset.frame),
-            replace(preset.settings, **{**stacked, **scene.settings, **given}),
+            replace(preset.settings, **{**(other or {}), **scene.settings, **given}),
             dt_s,
             self._lacks(scene, preset),
         )

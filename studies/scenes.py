@@ -22,6 +22,7 @@ from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import listed, part
 from studies.kit.study import Study, Tables
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of
+from studies.measures.wrongness import FALL, NO_ANSWER, WORDS
 from studies.sources.registry import Source, core_sources, resolve
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ RIDE = SinePulse(amplitude=1.0, omega=2.0 * math.pi, half_cycles=4)
 SHARED = ("outcome", "peak_ratio", "impacts", "steps", "wall_s", "message", "reason")
 SEEN = {
     "frame": ("parting", "tilt", "drift_m"),
-    "slide": ("place_m", "lift_m", "turn_rad"),
+    "slide": ("place_m", "lift_m", "flat_m", "turn_rad"),
     "floor": (LAG,),
 }
 """What an engine shows of a scene besides."""
@@ -46,7 +47,7 @@ LABELS = {
 }
 MEASURED = {
     "frame": ("exact", "right", "error"),
-    "slide": ("slips", "exact_slips", "slip_error_m"),
+    "slide": ("slips", "exact_slips", "slip_error_m", "verdict"),
     "floor": ("carried",),
 }
 """Scene -> the columns of its table before source, and after what all have."""
@@ -55,6 +56,8 @@ TYPES = {
     "right": bool,
 }
 """Of columns that hold no other numbers or words."""
+RIGHT, MISSED, THROWN_OFF = "right", "missed slip", "thrown off"
+"""Verdicts on a slide, beside `WORDS`; see `engines.run.slide.LEAST_LIFT`."""
 
 
 def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
@@ -155,13 +158,25 @@ def measure(job: Job) -> Row:
         return {**row, "exact": exact.peak_ratio, "right": right, "error": error, **seen}
     if scene == "slide":
         slips = {"slips": len(response.slips), "exact_slips": len(exact.slips)}
-        return {**row, **slips, "slip_error_m": _slip_error(response, exact), **seen}
+        found = {"slip_error_m": _slip_error(response, exact), "verdict": _verdict(response, exact)}
+        return {**row, **slips, **found, **seen}
     travel = float(case.motion.displacement(case.motion.duration))
     return {**row, "carried": 1.0 + _seen(response, "place_m") / travel, **seen}
 
 
 def _seen(response: Response, name: str) -> float:
     return float(response.observables.get(name, math.nan))
+
+
+def _verdict(response: Response, exact: Response) -> str:
+    """Say whether a block slid as often as it should, and flat."""
+    if response.outcome is Outcome.FAILED:
+        return WORDS[NO_ANSWER]
+    if response.outcome is Outcome.OVERTURNED:
+        return WORDS[FALL]
+    if len(response.slips) < len(exact.slips):
+        return MISSED
+    return THROWN_OFF if _seen(response, "lift_m") > _seen(response, "flat_m") else RIGHT
 
 
 def _slip_error(response: Response, exact: Response) -> float:
@@ -223,10 +238,10 @@ def _of_frames(rows: pd.DataFrame) -> Row:
 
 def _of_slides(rows: pd.DataFrame) -> Row:
     slides, held = rows["exact_slips"] > 0, rows["exact_slips"] == 0
-    kept = held & (rows["outcome"] == Outcome.AT_REST.value)
     return {
         "slides": len(rows),
-        "wrong": int((rows["slip_error_m"].isna() & ~kept).sum()),
+        "wrong": int((rows["verdict"] != RIGHT).sum()),
+        "thrown_off": int((rows["verdict"] == THROWN_OFF).sum()),
         "largest_slip_error_m": rows.loc[slides, "slip_error_m"].max(),
         "creep_m": rows.loc[held, "slip_error_m"].max(),
         "lift_m": rows["lift_m"].max(),
@@ -245,7 +260,7 @@ def _of_floors(rows: pd.DataFrame) -> Row:
 
 
 def finding(tables: Tables) -> str:
-    """Say how far off the engines are on frames and slides, each with its best preset."""
+    """Say how far off the engines are with their best presets, and which throw a slide off."""
     frames, slides = (_best(tables[f"{scene}-summary"]) for scene in ("frame", "slide"))
     claims = []
     if len(frames):
@@ -257,7 +272,14 @@ def finding(tables: Tables) -> str:
         return "No engine that was asked is built for these scenes."
     wrong = sum(int(lines["wrong"].sum()) for lines in (frames, slides) if len(lines))
     beside = f", and predict {wrong} outcomes wrong" if wrong else ""
-    return f"The engines, each with its best preset, miss {listed(claims)}{beside}."
+    said = f"The engines, each with its best preset, miss {listed(claims)}{beside}."
+    return " ".join([said, *_thrown(tables["slide-summary"])])
+
+
+def _thrown(lines: pd.DataFrame) -> Iterator[str]:
+    """Yield a sentence on the sources that do not keep a slide flat, if there are any."""
+    if len(lines) and len(sources := lines.loc[lines["thrown_off"] > 0, "source"]):
+        yield f"A block that slides is thrown off the base by {listed(sources)}."
 
 
 def _best(lines: pd.DataFrame) -> pd.DataFrame:
@@ -300,9 +322,9 @@ STUDY = Study(
 
 The frame is a beam on two or three free columns, which turn as a block of another size and
 restitution does; the slide is friction alone: two slips under a pulse, a launch, and a hold below
-the onset; the floor is moved in each way that an engine has, and should carry a block along. Steps
-that land on impacts are asked about frames alone. What an engine is not built for is a row that
-says so. Ten minutes.""",
+the onset; it is right only while the block lies flat and is not thrown off. The floor is moved in
+each way that an engine has, and should carry a block along. Steps that land on impacts are asked
+about frames alone. What an engine is not built for is a row that says so. Ten minutes.""",
     sources=core_sources("default", "tuned", "landing"),
     quick="One frame, one slide, and two places of the steps.",
     jobs=jobs,

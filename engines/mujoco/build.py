@@ -27,8 +27,9 @@ from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
 from engines.world import FloatArray, Moment, Pose, Script, Step
 
-NARROWEST_CONE = 0.1
-"""Friction over the root of impratio: the solver's cone; it errs in a narrower one."""
+NARROWEST_CONE, SOFT = 0.1, 0.5
+"""Friction over the root of impratio: the solver's cone; it errs in a narrower one, unless a
+contact's impedance is below the second number."""
 
 FLOOR_MASSES = 1000.0
 """Mass of a welded base over that of the bodies on it. From ten on it hardly matters; but the
@@ -129,7 +130,8 @@ class MujocoSettings:
             surface, *below = s.impedance
             softest = min(surface, 1.0 / (1.0 + yields))
             s = replace(s, impedance=(softest, *below), soft_surface=yields)
-        if s.impratio is None or "impratio" in scene.settings:
+        soft = s.impedance is not None and s.impedance[1] < SOFT
+        if s.impratio is None or soft or "impratio" in scene.settings:
             return s
         return replace(s, impratio=min(s.impratio, (s.friction / NARROWEST_CONE) ** 2))
 

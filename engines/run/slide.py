@@ -19,6 +19,11 @@ STILL_TIME, TREMORS = 0.05, 20.0
 """A box is at rest when it has not slid for this time, in units of sqrt(B/g); one that trembles
 where it is, after this many times as long."""
 
+LEAST_LIFT = 1e-4
+"""A box is thrown off, and slides flat no longer, when it rises by more than this part of its width
+and than its contact gives way. It rises from the base, or from a skin by which a contact holds it
+above: the lowest place after the time in which a tremor ends, or the last place before."""
+
 STOP, DISTANCE, SINCE = range(3)
 """Columns of slips: the end [s], the distance with its sign [m], the beginning [s]."""
 
@@ -38,8 +43,8 @@ class Slide:
     stays_at, stays_since : where and since when it has moved by no more than a tremor
     way : which way it slides, 0 while it does not
     rows, slips : how many rows there are, and how many slips have ended
-    lift, depth, turn : how high and deep its centre was beyond where it rests [m]; how far it
-        turned [rad]
+    lift, depth, level, turn : how high and deep its centre was beyond where it begins, and where
+        it lies [m]; how far it turned [rad]
     problem, far : see `watch`, and by how much [m]
     """
 
@@ -64,6 +69,7 @@ class Slide:
     lift: float = 0.0
     turn: float = 0.0
     depth: float = 0.0
+    level: float = 0.0
     overturned: bool = False
     done: bool = False
     problem: int = 0
@@ -114,6 +120,8 @@ def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, po
         slide.stays_since, slide.stays_at = time, place
     raised = pose.z - slide.half_height
     slide.lift, slide.depth = max(slide.lift, raised), max(slide.depth, -raised)
+    settled = time >= TREMORS * slide.still
+    slide.level = min(slide.level, raised) if settled else raised
     slide.turn = max(slide.turn, abs(pose.theta))
     if pose.z < 0.0:
         slide.problem, slide.far = SANK, slide.depth
@@ -141,6 +149,8 @@ def slide_response(slide: Slide, slips: FloatArray, history: History | None) -> 
     slide.way = 0.0
     seen = slips[: slide.slips]
     slid = Outcome.SLID if slide.slips else Outcome.AT_REST
+    lift, flat = slide.lift - max(slide.level, 0.0), max(-slide.level, LEAST_LIFT * slide.width)
+    thrown = f"thrown off: it rose {lift:.3g} m, and slides flat up to {flat:.3g} m"
     return Response(
         outcome=Outcome.OVERTURNED if slide.overturned else slid,
         peak_ratio=math.inf if slide.overturned else 0.0,
@@ -148,9 +158,11 @@ def slide_response(slide: Slide, slips: FloatArray, history: History | None) -> 
         slip_times=tuple(map(tuple, seen[:, [SINCE, STOP]].tolist())),
         slip_m=float(max(abs(seen[:, DISTANCE]), default=0.0)),
         sink_m=float(slide.depth),
+        message=thrown if lift > flat else "",
         history=history,
         observables={
-            "lift_m": float(slide.lift),
+            "lift_m": float(lift),
+            "flat_m": float(flat),
             "turn_rad": float(slide.turn),
             "place_m": float(slide.place),
         },

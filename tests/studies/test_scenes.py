@@ -21,6 +21,7 @@ FRAME_ROW = {
 SLIDE_ROW = {
     **{"scene": "slide", "source": "pymunk:tuned", "case": "sine", "reason": "", "wall_s": 1e-3},
     **{"outcome": "slid", "slips": 2, "exact_slips": 2, "slip_error_m": 2e-3, "lift_m": 0.0},
+    "verdict": "right",
 }
 
 
@@ -38,10 +39,11 @@ def test_a_source_has_one_line_of_its_frames():
 def test_a_block_that_is_held_is_no_wrong_slide_and_what_is_not_built_counts_nowhere():
     held = {**SLIDE_ROW, "exact_slips": 0, "slip_error_m": math.nan, "outcome": "at rest"}
     crept = {**held, "outcome": "slid", "slip_error_m": 1e-4}
-    fewer = {**SLIDE_ROW, "slip_error_m": math.nan}
+    fewer = {**SLIDE_ROW, "slip_error_m": math.nan, "verdict": "missed slip"}
     unbuilt = {**SLIDE_ROW, "source": "newton", "reason": Reason.UNAVAILABLE.name}
-    (line,) = of([SLIDE_ROW, held, crept, fewer, unbuilt], "slide-summary")
-    assert (line["slides"], line["wrong"]) == (4, 1)
+    thrown = {**SLIDE_ROW, "verdict": "thrown off"}
+    (line,) = of([SLIDE_ROW, held, crept, fewer, unbuilt, thrown], "slide-summary")
+    assert (line["slides"], line["wrong"], line["thrown_off"]) == (5, 2, 1)
     assert (line["largest_slip_error_m"], line["creep_m"]) == (2e-3, 1e-4)
     needed = scenes.STUDY.needed([SLIDE_ROW, unbuilt])
     assert needed == [SLIDE_ROW]
@@ -54,8 +56,14 @@ def test_the_finding_takes_the_worst_engine_of_the_best_presets():
     })  # fmt: skip
     words = finding({"frame-summary": frames, "slide-summary": pd.DataFrame()})
     assert "20 %" in words and "1 outcomes" in words and "50 %" not in words
-    slides = pd.DataFrame({"source": ["exact"], "largest_slip_error_m": [0.0], "wrong": [0]})
-    assert "No engine" in finding({"frame-summary": pd.DataFrame(), "slide-summary": slides})
+    slides = pd.DataFrame({
+        "source": ["exact", "drake:default"], "largest_slip_error_m": 0.0, "wrong": [0, 1],
+        "thrown_off": [0, 1],
+    })  # fmt: skip
+    words = finding({"frame-summary": pd.DataFrame(), "slide-summary": slides})
+    assert "1 outcomes" in words and "drake:default" in words
+    words = finding({"frame-summary": pd.DataFrame(), "slide-summary": slides[:1]})
+    assert "No engine" in words
 
 
 def test_equal_steps_are_shifted_by_parts_of_a_step():
