@@ -4,45 +4,39 @@ from __future__ import annotations
 
 import functools
 import math
-import platform
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import closing, suppress
 from dataclasses import replace
-from importlib.metadata import packages_distributions
-from json import dumps, loads
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import pandas as pd
 from cyclopts import Parameter
 
-from analytic import RigidBlock, SinePulse
+from analytic import RigidBlock, Still
 from analytic.motion import FloatArray
-from analytic.response import Outcome
+from analytic.start import REST
 from engines import ENGINES
-from engines.declaration import AT_REST, Engine, Stepping
+from engines.declaration import AT_REST, Stepping
 from engines.registry import OWN, UnloadableError, named
 from engines.run.run import build
 from engines.settings import perhaps
-from engines.world import ContactPhase, Moment, Step, World
+from engines.world import ContactPhase, Moment, Step
 from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments
 from studies.kit.arguments import Out, Place
 from studies.kit.foreign import apart
-from studies.kit.identity import version_of
 from studies.kit.jobs import Job, Row, answer
 from studies.kit.options import Running
-from studies.kit.say import in_columns, one_line, out_of, part
-from studies.kit.store import project_version
+from studies.kit.say import in_columns, out_of, part
+from studies.kit.store import FolderError, check, engines_of, provenance_of
 from studies.kit.study import Figures, Study, Tables
-from studies.kit.tables import write_text
 from studies.measures.costs import joint
 from studies.measures.differences import summarize, with_reference
-from studies.measures.presets import preset_of
-from studies.measures.verdicts import Verdict
+from studies.measures.presets import engine_of, preset_of
 from studies.sources.registry import Source, announce, presets_of, resolve, scene_of
 
 SWEEP, STEPS, EXTREMES, SCENES = (
@@ -50,21 +44,10 @@ SWEEP, STEPS, EXTREMES, SCENES = (
 )
 FURTHER = {"score-frame": "frame", "score-slide": "slide"}
 """Table -> its scene."""
-SCHEMA = 1
-"""Version of the form that `result_of` gives a result."""
 NOISE = 1e-6
 """Relative change of a peak up to which two results are the same."""
 CASE = ["figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p"]
 """Columns that make the name of one of the paper's cases."""
-MEASURES = {
-    "agree": "outcomes",
-    "extreme": "extreme",
-    "median_error": "median",
-    "p90_error": "p90",
-    "max_error": "max",
-    "no_answer": "failed",
-}
-"""Column of a table -> what a result calls it."""
 KNOWN = {
     SWEEP: ("peak_ratio",),
     STEPS: ("peak_ratio", "error"),
@@ -72,10 +55,8 @@ KNOWN = {
 }
 """Columns that a table has though none of its numbers may be known."""
 BLOCK = RigidBlock(width=0.5, height=1.5)
-UNFELT = SinePulse(amplitude=1e-9, omega=6.2832)
-"""What is checked of a world, on a base that stays where it is."""
 DT_S, LEAN, RATE = 5e-3, 0.25 * BLOCK.alpha, 0.1 * BLOCK.alpha * BLOCK.p
-"""Step [s], and rotation and rate to which a block is put."""
+"""What is checked of a world: steps [s], and rotation and rate to which a block is put."""
 OFF = 0.47
 """Part of a step from which on a moment is another one: what takes 16 steps within a step has
 less."""
@@ -197,14 +178,13 @@ def command(
     *,
     out: Out = Path("score"),
     quick: bool = False,
-    json: Place | None = None,
     against: Place | None = None,
     running: Running = Running(),  # noqa: B008
 ) -> int:
     """Score one engine: the paper's cases, errors along the step, extreme cases, slides and frames.
 
-    A world that lacks a method, turns the wrong way round, or declares another `Moment` than the
-    one at which its velocities hold is refused. With --against, the exit code is 0 whatever failed.
+    A world that turns the wrong way round, or declares another `Moment` than the one at which its
+    velocities hold, is refused. With --against, the exit code is 0 whatever failed.
 
     Parameters
     ----------
@@ -214,37 +194,33 @@ def command(
         installed packages.
     quick
         Every 11th case of two figures, every other step, fewer extremes: a minute or two.
-    json
-        File for the result.
     against
-        Such a file of an earlier release, or of another environment: what moved since is said.
+        Results of the same engine, of an earlier release or another environment: what moved since
+        is said.
     """
     name = known(engine)
-    declared = scored(name)
     # what cannot be compared with it is refused now, and not after the last run
-    earlier = against and read(against, declared)
-    if json:
-        arguments.check_writable("--json", json)
-    if declared.name not in OWN:
+    earlier = None if against is None else read(against, engine_of(name))
+    if engine_of(name) not in OWN:
         with suppress(UnloadableError):  # its cases will say so
             if problem := apart(problem_of, name):
                 raise BadInputError(f"ENGINE is {engine!r}: {problem}")
     code = STUDY.carry_out(out, jobs([name], quick), running, engine=name, quick=quick)
-    result = result_of(STUDY.read(out), declared)
-    if json:
-        write_text(json, dumps(result, indent=1, ensure_ascii=False) + "\n")
-    if earlier:
-        print("\n" + since(earlier, result))
-    return 0 if earlier else code
+    if earlier is None:
+        return code
+    versions, then = earlier
+    print(f"\nSince {versions}, {since(then, STUDY.read(out))}")
+    return 0
 
 
 def known(engine: str) -> str:
     """Return an engine by its name, with its preset where that is named; make a place's known."""
-    if engine.partition(":")[0] in ENGINES:
+    name, colon, preset = engine.partition(":")
+    if name in ENGINES:
         with arguments.as_bad_input("ENGINE: "):
-            scored(engine)
+            ENGINES[name].preset(preset if colon else None)
         return engine
-    if ":" not in engine:
+    if not colon:
         words = f"{', '.join(ENGINES)}, ENGINE:PRESET, MODULE:ENGINE or MODULE:build"
         near = perhaps(engine, list(ENGINES))
         raise BadInputError(f"ENGINE is {engine!r}{near}; it must be one of {words}")
@@ -255,160 +231,101 @@ def known(engine: str) -> str:
         raise BadInputError(f"ENGINE: {error}") from error
 
 
-def scored(source: str) -> Engine:
-    """Return an engine, with one of its presets alone where that is named."""
-    name, colon, preset = source.partition(":")
-    engine = ENGINES[name]
-    return replace(engine, presets=(engine.preset(preset),)) if colon else engine
-
-
 def problem_of(engine: str) -> str:
     """Say in a line what the world of one of an engine's presets does wrong, if any does.
 
-    What it raises is no matter of this: its cases will say so.
+    What it lacks or raises is no matter of this: its cases will say so.
     """
     for use in uses_of(engine):
         with suppress(BaseException):
-            if problem := _lacking(resolve(use)) or _wrong_motion(resolve(use)):
+            if problem := _problem(resolve(use)):
                 return f"{problem} ({use})"
     return ""
 
 
-def world_of(source: Source, start: tuple[float, float] = (0.0, 0.0)) -> World:
-    """Build a block on a base that is not moved."""
-    frame = "base" if "base" in source.declared.frames else None  # a base that moves is pulled, too
-    step = DT_S * BLOCK.p
-    scene = scene_of(BLOCK, UNFELT, source.preset, step=step, frame=frame, start=start)
-    world: Any = build(source.declared.use(scene))
-    return world  # type: ignore[no-any-return]
-
-
-def _lacking(source: Source) -> str:
-    """Say which method or moment a world lacks, or how its state has the wrong sign."""
-    world = world_of(source, (LEAN, RATE))
-    steps = source.used.stepping is not Stepping.OWN
-    whole = ("state", "fault", "close", "step" if steps else "advance")
-    for method in whole:
-        if not callable(getattr(world, method, None)):
-            return f"its world has no method {method}; it must have {', '.join(whole)}"
-    if not isinstance(getattr(world, "moment", None), Moment):
-        return "its world has no moment; it must be one of Moment.MIDDLE, END and NEXT"
-    with closing(world):
-        pose = np.asarray(world.state(), float)
-    if pose.shape != (1, 4):
-        return f"its state has the shape {pose.shape}; it must be (1, 4): x, z, theta, rate"
-    for what, found, put in (("theta", pose[0, 2], LEAN), ("rate", pose[0, 3], RATE)):
-        if abs(found + put) < 0.01 * put:
-            return f"its state says {what} {found:.3g} of a block put to {put:.3g}: {TURNED}"
-    return ""
-
-
-def _wrong_motion(source: Source) -> str:
-    """Say how a pulled block turns the wrong way round, or at which moment its velocities hold."""
+def _problem(source: Source) -> str:
+    _, (put,) = moved(source, start=(LEAN, RATE))
+    if min(put[2:]) < 0.0:
+        told = f"put to theta {LEAN:.3g} and rate {RATE:.3g}, its state says {{:.3g}} and {{:.3g}}"
+        return f"{told.format(*put[2:])}: {TURNED}"
     if source.used.stepping is Stepping.OWN:
         return ""
     if "base" in source.declared.frames:
-        g, onset = BLOCK.gravity, BLOCK.gravity * math.tan(BLOCK.alpha)
-        theta = pulled(source, [2.0 * onset] * 28, [-g] * 28, 1.0)[-1, 2]
+        onset = BLOCK.gravity * math.tan(BLOCK.alpha)
+        theta = moved(source, [(2.0 * onset, -BLOCK.gravity)] * 28)[1][-1, 2]
         if theta < -1e-3:
             return f"pulled towards +x, its block turns to theta {theta:.3g}: {TURNED}"
-    declared, measured = world_of(source).moment, measured_moment(source)
-    if not abs(measured - declared.value) >= OFF:
-        return ""
-    nearest = min(Moment, key=lambda moment: abs(moment.value - measured))
-    return (
-        f"its velocities hold {measured - declared.value:+.2g} of a step from the "
-        f"Moment.{declared.name} that its world declares; it must declare Moment.{nearest.name}"
-    )
+    if abs(late := lateness(source)) >= OFF:
+        return f"its velocities hold {late:+.2g} of a step after the Moment that its world declares"
+    return ""
 
 
-def measured_moment(source: Source) -> float:
-    """Return the part of a step after which its velocity holds; nan if no pull moves a block so.
+def lateness(source: Source) -> float:
+    """Return by which part of a step velocities hold later than a world declares.
 
     A block in the air is pulled during one step: all of the velocity gained moves it within that
-    step where the velocity is changed first, half where both go together, else none.
+    step where the velocity is changed first, half where both go together, else none. It is nan if
+    no pull moves a block so.
     """
     pull = 10.0 * BLOCK.gravity
     ups = [pull] * 4 + [0.0] * 24 + [-pull] + [0.0] * 4
-    heights = pulled(source, [0.0] * len(ups), ups, 0.0)[:, 1]
-    before, within, after = np.diff(heights)[[-6, -5, -1]]
+    moment, poses = moved(source, [(0.0, up) for up in ups])
+    before, within, after = np.diff(poses[:, 1])[[-6, -5, -1]]
     if not 0.5 < (before - after) / (pull * DT_S**2) < 2.0:
-        return math.nan  # its cases will say so
-    return float(Moment.NEXT.value - (within - before) / (after - before))
+        return math.nan
+    return float(Moment.NEXT.value - (within - before) / (after - before) - moment.value)
 
 
-def pulled(source: Source, along: list[float], up: list[float], side: float) -> FloatArray:
-    """Return the poses of a block that is pulled along and up its base [m/s2], step by step."""
-    with closing(world_of(source)) as world:
+def moved(
+    source: Source, pulls: Sequence[tuple[float, float]] = (), start: tuple[float, float] = REST
+) -> tuple[Moment, FloatArray]:
+    """Return a world's moment, and the poses of a block that is pulled along and up [m/s2]."""
+    frame = "base" if "base" in source.declared.frames else None  # a base that moves is pulled, too
+    step_of = {"step": DT_S * BLOCK.p, "frame": frame, "start": start}
+    scene = scene_of(BLOCK, Still(), source.preset, **step_of)
+    with closing(build(source.declared.use(scene))) as world:
         poses = [np.array(world.state(), float)[0]]
-        for number, (x, z) in enumerate(zip(along, up, strict=True), start=1):
-            phase = ContactPhase.SWING, side
-            world.step(Step(DT_S, number * DT_S, DT_S, x, z, 0.0, 0.0, 0.0, *phase))
+        for number, (x, z) in enumerate(pulls, start=1):
+            pull = (x, z, 0.0, 0.0, 0.0)
+            world.step(Step(DT_S, number * DT_S, DT_S, *pull, ContactPhase.SWING, 0.0))
             poses.append(np.array(world.state(), float)[0])
-    return np.array(poses)
+        return world.moment, np.array(poses)
 
 
-def result_of(tables: Tables, engine: Engine) -> dict[str, Any]:
-    """Return the result of tables, as JSON knows it; an error is None where no peak survives."""
-    cases, extremes = tables[SWEEP], tables[EXTREMES]
-    names = ["/".join(map(str, case)) for case in cases[CASE].itertuples(index=False)]
-    rows = pd.concat(
-        [cases.assign(case=names), extremes.assign(case="extreme/" + extremes["case"])]
-    )
-    rocked = (rows["outcome"] == Outcome.ROCKED.value) & np.isfinite(rows["peak_ratio"])
-    rows["peak"] = rows["peak_ratio"].astype(object).where(rocked, rows["outcome"])
-    valid = extremes[extremes["verdict"] != Verdict.INVALID.value]
-    good = (valid["verdict"] == Verdict.GOOD.value).groupby(valid["source"])
-    lines = swept(tables).set_index("source").join(good.agg(extreme="sum", extremes="count"))
-    lines = lines[["cases", "extremes", *MEASURES]].rename(columns=MEASURES, index=preset_of)
-    lines = lines.astype(object).where(lines.notna(), None)
-    packages = engine.packages or packages_distributions().get(engine.library, ())
-    versions = {"rocking": project_version(), "python": platform.python_version()}
-    return {
-        "schema": SCHEMA,
-        "engine": engine.name,
-        "versions": versions | {name: version_of(name) for name in packages},
-        "presets": lines.to_dict("index"),
-        "peaks": {
-            preset_of(str(source)): dict(zip(group["case"], group["peak"], strict=True))
-            for source, group in rows.groupby("source", sort=False)
-        },
-    }
+def read(folder: Path, engine: str) -> tuple[str, Tables]:
+    """Read an engine's earlier results, and with which versions they were made."""
+    check(folder, [f"{SWEEP}.csv", f"{EXTREMES}.csv"], "--against")
+    tables, record = STUDY.read(folder), provenance_of(folder)
+    held = [engine_of(name) for name in tables.get(SWEEP, pd.DataFrame({"source": []}))["source"]]
+    if set(held) != {engine} or EXTREMES not in tables:
+        raise FolderError(folder, f"it must hold what scoring {engine} wrote", "--against")
+    known = {"rocking": record["version"], **engines_of(record)}
+    packages = ("rocking", *ENGINES[engine].packages)
+    return ", ".join(f"{name} {known[name]}" for name in packages if name in known), tables
 
 
-def read(path: Path, engine: Engine) -> dict[str, Any]:
-    """Read an engine's result back as --json wrote it; BadInputError if it is none."""
-    try:
-        if not path.is_file():  # a pipe would be waited for
-            raise OSError("it is no file")
-        found = loads(path.read_text(encoding="utf-8"))
-        if found["schema"] != SCHEMA or found["engine"] != engine.name:
-            raise ValueError(f"its schema is {found['schema']}, its engine {found['engine']}")
-        parts = (*found["peaks"].values(), found["versions"])
-        values = [value for part in parts for value in part.values()]
-        if not all(isinstance(value, float | str) for value in values):
-            raise ValueError("it holds something else")
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
-        raise BadInputError(
-            f"--against is {str(path)!r}; it must be what --json wrote of {engine.name} by schema "
-            f"{SCHEMA} ({one_line(error)})"
-        ) from error
-    return dict(found)
+def answers(tables: Tables) -> pd.DataFrame:
+    """Return the outcome and the peak of each source and case."""
+    cases = tables[SWEEP]
+    cases = cases.assign(case=cases[CASE].astype(str).agg("/".join, axis=1))
+    both = pd.concat([cases, tables[EXTREMES]])
+    return both[["source", "case", "outcome", "peak_ratio"]]
 
 
-def since(then: Mapping[str, Any], now: Mapping[str, Any]) -> str:
+def since(then: Tables, now: Tables) -> str:
     """Say what moved between two results, of the answers in both; below, which did."""
-    answers = [pd.DataFrame(result["peaks"]).unstack().dropna() for result in (then, now)]
-    both = pd.concat(answers, axis=1, join="inner", keys=["then", "now"])
-    table = both.rename_axis(["preset", "case"]).reset_index()
-    before, after = (pd.to_numeric(table[name], errors="coerce") for name in ("then", "now"))
-    table["change"] = after / before - 1.0
-    other = table[table["change"].isna() & (table["then"] != table["now"])]
-    moved = table[table["change"].abs() > NOISE].sort_values("change", key=abs, ascending=False)
-    versions = ", ".join(f"{name} {version}" for name, version in then["versions"].items())
+    ends = ("_then", "_now")
+    table = answers(then).merge(answers(now), on=["source", "case"], suffixes=ends)
+    table["change"] = table["peak_ratio_now"] / table["peak_ratio_then"] - 1.0
+    same = table["outcome_then"] == table["outcome_now"]
+    moved = table[same & (table["change"].abs() > NOISE)]
+    moved = moved.sort_values("change", key=abs, ascending=False)
     said = (
-        f"Since {versions}, {len(other)} of {len(table)} answers have another outcome, and "
-        f"{len(moved)} peaks moved by more than {NOISE:g} of themselves."
+        f"{(~same).sum()} of {len(table)} answers have another outcome, and {len(moved)} peaks "
+        f"moved by more than {NOISE:g} of themselves."
     )
-    parts = [other.drop(columns="change"), moved]
+    parts = [
+        table.loc[~same, ["source", "case", "outcome_then", "outcome_now"]],
+        moved[["source", "case", "peak_ratio_then", "peak_ratio_now", "change"]],
+    ]
     return "\n\n".join([said, *(in_columns(part) for part in parts if len(part))])

@@ -8,19 +8,21 @@ import math
 import time
 import warnings
 from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from analytic.block import RigidBlock
 from analytic.kernels.excursions import BROKEN
-from analytic.kernels.rest import after_impact, next_uplift
+from analytic.kernels.rest import acceleration, after_impact, ground, next_uplift, segment_at
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import FAILURES
-from analytic.start import REST, pose
+from analytic.start import REST, Posed, pose
 
-MOST_EXCURSIONS = 2000
+MOST_EXCURSIONS, LYING = 2000, 0.5 * math.pi
 
 
 def solve_ivp_response(
@@ -38,8 +40,12 @@ def solve_ivp_response(
     The absolute tolerance is that of a rotation of a thousandth of alpha. The response's steps are
     evaluations of the right-hand side.
     """
+    from scipy.integrate import solve_ivp
+
     posed = pose(block, motion, "exact", start, duration, times)
-    march = _March(block, method, rtol, posed, duration is None, times is not None)
+    tolerances = {"rtol": rtol, "atol": 1e-3 * rtol * block.alpha}
+    solve = partial(solve_ivp, method=method, dense_output=times is not None, **tolerances)
+    march = _March(solve, posed, block.p, math.inf if duration is None else posed.until)
     began = time.perf_counter()
     with warnings.catch_warnings(record=True) as said:
         # what an integrator has to say belongs to its row
@@ -58,65 +64,48 @@ def solve_ivp_response(
         impacts=tuple(march.impacts),
         steps=march.evaluations,
         wall_s=wall_s,
-        history=march.history(),
+        history=None if times is None else march.history(),
     )
 
 
+@dataclass
 class _March:
-    """One response: the rotation folded to one side, time in units of 1/p, acceleration in g."""
+    """One response: the rotation folded to one side, time in units of 1/p, acceleration in g.
 
-    def __init__(
-        self, block: RigidBlock, method: str, rtol: float, posed: Any, free: bool, recorded: bool
-    ) -> None:
-        from scipy.integrate import solve_ivp
+    It is followed until a time, which is inf where the peak is to be decided.
+    """
 
-        self.solve_ivp: Any = solve_ivp
-        self.method, self.rtol = method, rtol
-        self.p, self.alpha = block.p, block.alpha
-        self.law, self.start, self.segments, until, self.times = posed
-        self.moving = float(self.segments[-1, 1])
-        self.until = math.inf if free else until
-        self.samples = np.zeros((2, self.times.size))
-        self.recorded, self.end = recorded, self.until
-        self.impacts: list[Impact] = []
-        self.peak, self.evaluations = self.start.y, 0
+    solve: Callable[..., Any]
+    posed: Posed
+    p: float
+    until: float
+    impacts: list[Impact] = field(default_factory=list)
+    evaluations: int = 0
+    message: str = FAILURES[BROKEN].message
 
     def run(self) -> Outcome:
-        self.message = FAILURES[BROKEN].message
-        if not np.all(np.isfinite(self.segments)):
+        law, (side, y, v), segments, *_ = self.posed
+        self.peak, self.end, self.samples = y, math.inf, np.zeros((2, self.posed.times.size))
+        if not np.all(np.isfinite(segments)):
             return Outcome.FAILED
-        side, y, v = self.start
-        tau, j = 0.0, int(np.searchsorted(self.segments[:, 1], 0.0, side="right"))
-        started = side != 0.0
-        for _ in range(MOST_EXCURSIONS + len(self.segments)):
+        tau, j, started = 0.0, 0, side != 0.0
+        for _ in range(MOST_EXCURSIONS + len(segments)):
+            j = segment_at(segments, j, tau)
             if side == 0.0:
-                j, tau, side, _ = next_uplift(self.segments, j, tau, self.law.onset)
-                if side == 0.0:
-                    return Outcome.ROCKED if started or self.peak > 0.0 else Outcome.AT_REST
+                j, tau, side, _ = next_uplift(segments, j, tau, law.onset)
+            if side == 0.0:
+                return Outcome.ROCKED if started or self.peak > 0.0 else Outcome.AT_REST
             path = self._stretch(j, tau, y, v, side)
-            self.evaluations += path.nfev
             if path.status < 0:
                 self.message = str(path.message)
                 return Outcome.FAILED
-            contact, turns, lying = path.y_events
-            self.peak = max(self.peak, path.y[0].max(), *(float(top[0]) for top in turns))
-            self._sample(path, side)
-            tau, y, v = float(path.t[-1]), float(path.y[0, -1]), float(path.y[1, -1])
-            over = tau >= self.moving
-            if len(lying) or (over and y > self.alpha and v >= 0.0 and self.until == math.inf):
+            self._record(path, side)
+            tau, (y, v) = float(path.t[-1]), path.y[:, -1].tolist()
+            if outcome := self._decided(path, tau, y, v):
                 self.end = tau
-                return Outcome.OVERTURNED
-            if tau >= self.until:
-                return Outcome.OVERTURNED if y > self.alpha else Outcome.ROCKED
-            if len(contact):
-                side, v = self._strike(tau, v, side)
-                y = 0.0
-                if side == 0.0:
-                    tau, v = tau + v, 0.0
-            elif len(turns) and over and self.until == math.inf and path.status == 1:
-                return Outcome.ROCKED
-            while j < len(self.segments) and tau >= self.segments[j, 1]:
-                j += 1
+                return outcome
+            if len(path.t_events[0]):
+                y, (tau, side, v) = 0.0, self._strike(j, tau, v, side)
         self.message = f"more than {MOST_EXCURSIONS} excursions"
         return Outcome.FAILED
 
@@ -127,63 +116,64 @@ class _March:
         turn or to fall, some -ln(1e-16) = 37. The first step out of an impact is a tenth at most of
         the excursion, 2 v / y'', for an excursion shorter than that step would be stepped over.
         """
-        free = j >= len(self.segments)
-        end = min(self.until, tau + 60.0) if free else float(self.segments[j, 1])
-        events = [_crossing(0, 0.0, -1), _crossing(1, 0.0, -1), _crossing(0, 0.5 * math.pi, 1)]
-        events[1].terminal = free and self.until == math.inf  # type: ignore[attr-defined]
-        fall = max(abs(self._rate(j, side)(tau, (y, v))[1]), 1e-6)
-        return self.solve_ivp(
-            self._rate(j, side),
-            (tau, end),
-            (y, v),
-            method=self.method,
-            rtol=self.rtol,
-            atol=1e-3 * self.rtol * self.alpha,
-            events=events,
-            dense_output=self.recorded,
-            first_step=min(0.2 * v / fall, 0.5 * (end - tau)) if y == 0.0 < v else None,
-        )
-
-    def _rate(self, j: int, side: float) -> Callable[[float, Any], tuple[float, float]]:
-        sin, cos, alpha = math.sin, math.cos, self.alpha
-        if j >= len(self.segments):
-            return lambda t, x: (x[1], -sin(alpha - x[0]))
-        start, _, amplitude, omega, phase, offset, slope = map(float, self.segments[j])
+        law, rows = self.posed.law, self.posed.segments[j : j + 1].tolist()
+        end = rows[0][1] if rows else min(self.until, tau + 60.0)
+        decides = not rows and self.until == math.inf
 
         def rate(t: float, x: Any) -> tuple[float, float]:
-            a = amplitude * sin(omega * (t - start) + phase) + offset + slope * (t - start)
-            z = alpha - x[0]
-            return x[1], -(sin(z) + side * a * cos(z))
+            return x[1], acceleration(law, side, ground(rows, 0, t), x[0])
 
-        return rate
+        fall = max(abs(rate(tau, (y, v))[1]), 1e-6)
+        path = self.solve(
+            rate,
+            (tau, end),
+            (y, v),
+            events=[_crossing(0, 0.0, -1), _crossing(1, 0.0, -1, decides), _crossing(0, LYING, 1)],
+            first_step=min(0.2 * v / fall, 0.5 * (end - tau)) if y == 0.0 < v else None,
+        )
+        self.evaluations += path.nfev
+        return path
 
-    def _strike(self, tau: float, v: float, side: float) -> tuple[float, float]:
-        """Return (side, velocity) after an impact, or (0, time until rest)."""
-        after = -self.law.eta * v
-        self.impacts.append(Impact(tau / self.p, side * v * self.p, -side * after * self.p))
-        j = int(np.searchsorted(self.segments[:, 1], tau, side="right"))
-        onward, wait = after_impact(self.law, self.segments, j, tau, -side, after)
-        return onward, after if onward else wait
-
-    def _sample(self, path: Any, side: float) -> None:
-        wanted = self.times * self.p
+    def _record(self, path: Any, side: float) -> None:
+        """Keep the peak of a stretch, and its samples."""
+        self.peak = max(self.peak, path.y[0].max(), *(float(top[0]) for top in path.y_events[1]))
+        wanted = self.posed.times * self.p
         inside = (wanted >= path.t[0]) & (wanted <= path.t[-1])
         if inside.any():
             self.samples[:, inside] = side * path.sol(wanted[inside])
 
-    def history(self) -> History | None:
-        """Return the samples to the end of the response, if they were asked for."""
-        if not self.recorded:
-            return None
-        seen = int(np.searchsorted(self.times * self.p, self.end, side="right"))
+    def _decided(self, path: Any, tau: float, y: float, v: float) -> Outcome | None:
+        """Return the outcome if a stretch has decided it."""
+        contact, turns, lying = path.t_events
+        beyond = y > self.posed.law.alpha
+        free = self.until == math.inf and tau >= self.posed.segments[-1, 1]
+        if len(lying) or (free and beyond and v >= 0.0):
+            return Outcome.OVERTURNED
+        if tau >= self.until:
+            return Outcome.OVERTURNED if beyond else Outcome.ROCKED
+        turned = len(turns) and not len(contact) and path.status == 1
+        return Outcome.ROCKED if free and turned else None
+
+    def _strike(self, j: int, tau: float, v: float, side: float) -> tuple[float, float, float]:
+        """Return time, side and velocity after an impact, or at the rest that follows it."""
+        law, segments, after = self.posed.law, self.posed.segments, -self.posed.law.eta * v
+        self.impacts.append(Impact(tau / self.p, side * v * self.p, -side * after * self.p))
+        onward, wait = after_impact(law, segments, segment_at(segments, j, tau), tau, -side, after)
+        return (tau, onward, after) if onward else (tau + wait, 0.0, 0.0)
+
+    def history(self) -> History:
+        """Return the samples to the end of the response."""
+        times = self.posed.times
+        seen = int(np.searchsorted(times * self.p, self.end, side="right"))
         theta, rate = self.samples[:, :seen]
-        return History(self.times[:seen], theta, rate * self.p)
+        return History(times[:seen], theta, rate * self.p)
 
 
-def _crossing(component: int, level: float, direction: int) -> Callable[[float, Any], float]:
+def _crossing(
+    component: int, level: float, direction: int, terminal: bool = True
+) -> Callable[[float, Any], float]:
     def event(t: float, x: Any) -> float:
         return float(x[component]) - level
 
-    event.terminal = True  # type: ignore[attr-defined]
-    event.direction = direction  # type: ignore[attr-defined]
+    event.terminal, event.direction = terminal, direction  # type: ignore[attr-defined]
     return event

@@ -36,9 +36,6 @@ class Moreau(MoreauWorld):
         super().__init__(scene, MoreauSettings(friction=settings.friction, closing=True), dt_s)
 
 
-Middle, End, NoMoment = (
-    type("Staggered", (World,), {"moment": each}) for each in (Moment.MIDDLE, Moment.END, None)
-)
-NoStep, NoState, NoFault, NoClose = (
-    type("Lacking", (World,), {name: None}) for name in ("step", "state", "fault", "close")
+Middle, End = (
+    type("Staggered", (World,), {"moment": each}) for each in (Moment.MIDDLE, Moment.END)
 )

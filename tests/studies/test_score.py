@@ -1,6 +1,7 @@
 """One engine on one page: registered, at a place, or nothing but what builds its world."""
 
-import json
+import math
+import shutil
 from collections import Counter
 
 import pandas as pd
@@ -8,23 +9,14 @@ import pytest
 from commanding import refused
 
 from analytic import simulate
-from engines import ENGINES, core_engines, installed_engines
+from engines import core_engines, installed_engines
 from engines.declaration import Stepping
 from studies import respond, score
 from studies.__main__ import run
 from studies.kit.run import run as measured
-from studies.score import (
-    CASE,
-    EXTREMES,
-    STUDY,
-    SWEEP,
-    measured_moment,
-    problem_of,
-    read,
-    since,
-    uses_of,
-    world_of,
-)
+from studies.kit.store import write_record
+from studies.kit.tables import write_table
+from studies.score import CASE, EXTREMES, STUDY, SWEEP, lateness, problem_of, since, uses_of
 from studies.sources.registry import announce, resolve
 
 MINE = "my_engine:World"
@@ -42,7 +34,7 @@ MINE = "my_engine:World"
         ("my engine:World", "it must be like my_package.mine:ENGINE"),
         ("rocking_moreau:ENGINE", "is called 'moreau', as another is"),
         ("rocking_moreau:SLACK", "is neither a declaration nor what builds a world"),
-        ("wrong:NoFault", "ENGINE is 'wrong:NoFault': its world has no method fault"),
+        ("wrong:Turned", "ENGINE is 'wrong:Turned': put to theta 0.0804 and rate"),
     ],
 )
 def test_what_is_no_engine_is_refused_in_a_line(place, message, alone, tmp_path, capsys):
@@ -75,16 +67,14 @@ def test_each_table_has_its_rows_with_its_own_columns(few):
 def test_the_page_the_result_and_what_moved_since(alone, few, tmp_path, capsys):
     """Of an engine that does not declare itself: its numbers are those that `respond` gives."""
     pytest.importorskip("pymunk")
-    out, kept = tmp_path / "out", tmp_path / "kept.json"
-    asked = ["score", MINE, "--quick", "--out", str(out), "--json", str(kept)]
+    out, then = tmp_path / "out", tmp_path / "then"
+    asked = ["score", MINE, "--quick", "--out", str(out)]
     assert run(asked) == 0
     assert capsys.readouterr().out.strip() == (out / "findings.txt").read_text().strip()
     assert {path.name for path in out.glob("*.png")} == {"score.png", "extremes.png"}
     tables = STUDY.read(out)
     assert tables[SWEEP]["figure"].dtype == int and "verdict" not in tables[SWEEP]
-    result = json.loads(kept.read_text())
-    assert list(result) == ["schema", "engine", "versions", "presets", "peaks"]
-    errors = []
+    swept, errors = score.answers(tables).set_index(["source", "case"]), []
     for job in few(["my_engine"], True):
         if (job.labels["part"], job.source) == (SWEEP, "my_engine:landing"):
             case, name = job.case, "/".join(str(job.labels[column]) for column in CASE)
@@ -93,52 +83,58 @@ def test_the_page_the_result_and_what_moved_since(alone, few, tmp_path, capsys):
                 simulate(case.system, case.motion),
             )
             rocked = found.outcome.value == "rocked"
-            told = result["peaks"]["landing"][name]
-            assert told == (found.peak_ratio if rocked else found.outcome.value)
+            told = swept.loc[(job.source, name)]
+            assert told["outcome"] == found.outcome.value
+            assert told["peak_ratio"] == found.peak_ratio or not rocked
             errors += [abs(found.peak_ratio / right.peak_ratio - 1.0)] * rocked
-    numbers = result["presets"]["landing"]
-    assert numbers["max"] == pytest.approx(max(errors), rel=1e-6)
-    assert (numbers["cases"], numbers["outcomes"], numbers["failed"]) == (2, 2, 0)
-    rows = tables[EXTREMES]
-    good = rows.loc[rows["source"] == "my_engine:landing", "verdict"] == "good"
-    assert (numbers["extreme"], numbers["extremes"]) == (good.sum(), 2)
-    result["peaks"]["landing"][name] = "slid"
-    (tmp_path / "before.json").write_text(json.dumps(result))
+    numbers = score.swept(tables).set_index("source").loc["my_engine:landing"]
+    assert numbers["max_error"] == pytest.approx(max(errors), rel=1e-6)
+    assert (numbers["cases"], numbers["agree"], numbers["no_answer"]) == (2, 2, 0)
+    shutil.copytree(out, then, ignore=shutil.ignore_patterns("*.sqlite"))
     asked[1] = "my_engine"  # it is known by now
-    assert run([*asked, "--against", str(tmp_path / "before.json")]) == 0
-    assert "1 of 8 answers have another outcome, and 0 peaks" in capsys.readouterr().out
+    assert run([*asked, "--against", str(then)]) == 0
+    assert "Since rocking" in capsys.readouterr().out.splitlines()[-1]
     refused(capsys, ["score", "pymunk", "--quick", "--out", out], "my_engine")
 
 
+def results(peaks):
+    """Return the tables of a result: the first case is an extreme one."""
+    words = {math.inf: "overturned", 0.0: "at rest"}
+    rows = pd.DataFrame(
+        {**dict.fromkeys(CASE, name), "source": source, "outcome": words.get(peak, "rocked"),
+         "peak_ratio": peak}
+        for source, found in peaks.items() for name, peak in found.items()
+    )  # fmt: skip
+    return {SWEEP: rows[1:], EXTREMES: rows[:1].assign(case="first")}
+
+
 def test_what_moved_is_beyond_noise():
-    peaks = {"same": 0.5, "noise": 0.5, "little": 0.5, "more": 0.5, "fell": 0.5, "rose": "slid"}
-    then = {"versions": {"engine": "1.0"}, "peaks": {"tuned": {**peaks, "gone": 1.0}, "old": peaks}}
-    moved = {"noise": 0.5 * (1 + 9e-7), "little": 0.5 * (1 + 2e-6), "more": 0.3}
-    moved |= {"fell": "overturned", "rose": 0.25, "new": 1.0}
-    _, other, most = since(then, {"peaks": {"new": peaks, "tuned": peaks | moved}}).split("\n\n")
-    outcomes = [line.split()[1:] for line in other.splitlines()]
-    assert outcomes[0] == ["case", "then", "now"]
-    assert outcomes[1:] == [["fell", "0.5", "overturned"], ["rose", "slid", "0.25"]]
-    assert [line.split()[1] for line in most.splitlines()] == ["case", "more", "little"]
+    peaks = {"same": 0.5, "noise": 0.5, "little": 0.5, "more": 0.5, "fell": 0.5, "rose": 0.0}
+    moved = {"first": 0.4, "noise": 0.5 * (1 + 9e-7), "little": 0.5 * (1 + 2e-6), "more": 0.3}
+    moved |= {"fell": math.inf, "rose": 0.25, "new": 1.0}
+    then = results(
+        {"e:tuned": {"first": 0.2, **peaks, "stays": math.inf, "gone": 1.0}, "e:old": peaks}
+    )
+    now = results({"e:tuned": {**moved, "same": 0.5, "stays": math.inf}, "e:new": peaks})
+    said, other, most = since(then, now).split("\n\n")
+    assert said.startswith("2 of 8 answers") and "3 peaks" in said
+    rows = [[line.split()[1].split("/")[0] for line in each.splitlines()] for each in (other, most)]
+    assert rows == [["case", "fell", "rose"], ["case", "first", "more", "little"]]
 
 
 def test_what_is_no_earlier_result_is_refused(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(score, "jobs", None)
-    asked, engine = ["score", "mujoco"], ENGINES["mujoco"]
-    refused(capsys, [*asked, "--json", "nowhere/result.json"], "--json")
-    refused(capsys, [*asked, "--against", "/dev/zero"], "--against", "it is no file")
-    kept = {"schema": 1, "engine": "mujoco", "versions": {}, "presets": {}, "peaks": {}}
-    other = (
-        *({"schema": 2}, {"engine": "pymunk"}, {"versions": 1}, {"peaks": [1.0]}),
-        *({"peaks": {"tuned": value}} for value in (1.0, {"a case": [1.0]}, {"a case": 10**400})),
-    )
-    path = tmp_path / "before.json"
-    broken = ("[", "[" * 10**5, "[]", "5", "null", "{}", '"schema engine"', "\0", "")
-    for text in (*broken, *(json.dumps(kept | each) for each in other)):
-        path.write_text(text)
-        refused(capsys, [*asked, "--against", path], "--against", "schema 1")
-    path.write_text(json.dumps(kept))
-    assert read(path, engine) == kept
+    asked = ["score", "mujoco", "--against", tmp_path]
+    refused(capsys, asked, "--against", "must hold what scoring mujoco wrote")
+    tables = results({"pymunk:tuned": {"first": 0.2, "second": 0.5}})
+    for name, table in tables.items():
+        write_table(tmp_path / f"{name}.csv", table)
+    refused(capsys, asked, "--against", f"{EXTREMES}.csv" if EXTREMES < SWEEP else f"{SWEEP}.csv")
+    write_record(tmp_path, {"version": "0.2", "engines": {"pymunk": "7.0"}, "runs": []})
+    refused(capsys, asked, "--against", "must hold what scoring mujoco wrote")
+    versions, kept = score.read(tmp_path, "pymunk")
+    assert versions == "rocking 0.2, pymunk 7.0"
+    assert since(kept, tables).startswith("0 of 2 answers")
 
 
 def test_the_best_preset_is_the_one_that_is_right_most_often(monkeypatch):
@@ -167,23 +163,16 @@ def test_no_engine_is_accused(name):
     for use in map(resolve, uses_of(name)):
         if use.used.stepping is not Stepping.OWN:
             lag = 0.5 - 0.5 / substeps.get(f"{name}:{use.preset}", 1)
-            declared = world_of(use).moment.value
-            assert measured_moment(use) - declared == pytest.approx(lag, abs=0.03)
+            assert lateness(use) == pytest.approx(lag, abs=0.03)
 
 
 NO_WORLDS = {
-    "wrong:NoStep": "has no method step; it must have state, fault, close, step",
-    "wrong:NoState": "has no method state",
-    "wrong:NoFault": "has no method fault",
-    "wrong:NoClose": "has no method close",
-    "wrong:NoMoment": "has no moment; it must be one of Moment.MIDDLE, END and NEXT",
-    "wrong:Turned": "theta -0.0804 of a block put to 0.0804",
-    "wrong:Backwards": "rate -0.0982 of a block put to 0.0982",
+    "wrong:Turned": "its state says -0.0804 and -0.0982",
+    "wrong:Backwards": "its state says 0.0804 and -0.0982",
     "wrong:Mirrored": "pulled towards +x, its block turns to theta -0.0",
-    "wrong:Middle": "hold +1 of a step from the Moment.MIDDLE that its world declares; it must "
-    "declare Moment.NEXT",
-    "wrong:End": "must declare Moment.NEXT",
-    "wrong:Moreau": "must declare Moment.END",
+    "wrong:Middle": "hold +1 of a step",
+    "wrong:End": "hold +0.5 of a step",
+    "wrong:Moreau": "hold +0.5 of a step",
     "hostile:Calm": "",  # what does not move has no moment
     "my_engine:World": "",
 }
