@@ -129,7 +129,7 @@ def test_what_is_no_earlier_result_is_refused(tmp_path, capsys, monkeypatch):
     tables = results({"pymunk:tuned": {"first": 0.2, "second": 0.5}})
     for name, table in tables.items():
         write_table(tmp_path / f"{name}.csv", table)
-    refused(capsys, asked, "--against", f"{EXTREMES}.csv" if EXTREMES < SWEEP else f"{SWEEP}.csv")
+    refused(capsys, asked, "--against", f"{SWEEP}.csv must be beside")
     write_record(tmp_path, {"version": "0.2", "engines": {"pymunk": "7.0"}, "runs": []})
     refused(capsys, asked, "--against", "must hold what scoring mujoco wrote")
     versions, kept = score.read(tmp_path, "pymunk")
