@@ -278,8 +278,9 @@ def finding(tables: Tables) -> str:
 
 def _thrown(lines: pd.DataFrame) -> Iterator[str]:
     """Yield a sentence on the sources that do not keep a slide flat, if there are any."""
-    if len(lines) and len(sources := lines.loc[lines["thrown_off"] > 0, "source"]):
-        yield f"A block that slides is thrown off the base by {listed(sources)}."
+    thrown = lines.reindex(columns=["source", "thrown_off"]).query("thrown_off > 0")["source"]
+    if len(thrown):
+        yield f"A block that slides is thrown off the base by {listed(thrown)}."
 
 
 def _best(lines: pd.DataFrame) -> pd.DataFrame:
