@@ -131,7 +131,7 @@ def side_by_side(
     from studies.cases.refusal import BadInputError
     from studies.compare.rows import compare, records, window_of
     from studies.kit.jobs import Question
-    from studies.kit.options import Yours
+    from studies.kit.options import EffortOptions, Yours
     from studies.kit.scene_options import refuse_endless
 
     if isinstance(sources, str) or not (sources := list(sources)):
@@ -147,7 +147,8 @@ def side_by_side(
         window = window_of(block, motion, duration)
         refuse_endless(block, window, duration=duration, dt=dt)
         case = Question(system=block, motion=motion, start=start, duration=window)
-        rows = compare(case, sources, Yours(friction=friction, dt=dt), estimate=estimate)
+        yours = Yours(friction=friction, dt=dt)
+        rows = compare(case, sources, yours, EffortOptions(), estimate=estimate)
     except BadInputError as error:
         raise ValueError(str(error).removeprefix("--")) from None
     return pd.DataFrame(records(rows))

@@ -36,8 +36,8 @@ from studies.sources.registry import core_sources
 
 ALONG, SCENES = "precision", "scenes"
 """The tables whose rows are measured."""
-TYPICAL, NEAR, ALL = "typical", "near overturning", "all"
-"""The sets of cases, and both together."""
+TYPICAL, ALL = "typical", "all"
+"""A set of cases, and both together."""
 FINE_TARGETS = (*TARGETS[1:], 1e-6)
 """Errors that are asked of every method."""
 CASE = HISTORIES[5][1]
@@ -216,17 +216,9 @@ def put_back(job: Job) -> Row:
 
 COLUMNS = {
     ALONG: [
-        *(
-            "method",
-            "value",
-            "set",
-            *(item.name for item in fields(Case)),
-            "budget_s",
-            "source",
-            "outcome",
-            "peak_ratio",
-        ),
-        *("impacts", "steps", "wall_s", "message", "setup_s", "runs", "error"),
+        *("method", "value", "set", *(item.name for item in fields(Case)), "budget_s", "source"),
+        *("outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
+        *("setup_s", "runs", "error"),
     ],
     SCENES: [
         *("engine", "scene", "outcome", "wall_s", "runs", "steps"),
@@ -266,33 +258,17 @@ def engines_of(table: pd.DataFrame) -> pd.DataFrame:
     return table[table["method"].isin(along)]
 
 
-def choices(table: pd.DataFrame) -> dict[tuple[float, str], dict[str, Any]]:
-    """Return the cheapest setting of an engine below each target, on typical cases and on all.
+def cheapest(table: pd.DataFrame) -> tuple[float, pd.Series[Any], str] | None:
+    """Return the smallest error that an engine keeps, its cheapest setting, and on which cases.
 
-    (target, TYPICAL or ALL) -> method, value, and setting: both in words; wall_s: mean time of a
-    case [s], and over_exact: that over the exact solution's, both over these cases; runs;
-    typical_error, near_error: its largest errors, inf where an outcome is wrong. There is nothing
-    where no setting reaches the target.
+    They are all cases, or typical ones where no setting keeps an error on all.
     """
-    engines, methods = engines_of(table), known_methods()
-    errors = engines.set_index(["method", "value", "set"])["max_error"]
-    among = {
-        TYPICAL: (engines[engines["set"] == TYPICAL], table[table["set"] == TYPICAL]),
-        ALL: (joint(engines), table),
-    }
-    found = {}
-    for target, (cases, (lines, timed)) in product(TARGETS, among.items()):
-        if (best := cheapest_below(lines, target)) is not None:
-            at = best["method"], best["value"]
-            name = {"step": "p dt"}.get(setting := methods[at[0]].setting, setting)
-            found[target, cases] = {
-                **best[["method", "value", "wall_s", "runs"]],
-                "setting": f"{at[0]} at {name} = {at[1]:g}",
-                "over_exact": best["wall_s"] / exact_cost(timed),
-                "typical_error": float(errors.get((*at, TYPICAL), math.nan)),
-                "near_error": float(errors.get((*at, NEAR), math.nan)),
-            }
-    return found
+    engines = engines_of(table)
+    for cases, lines in ((ALL, joint(engines)), (TYPICAL, engines[engines["set"] == TYPICAL])):
+        for target in reversed(TARGETS):
+            if (best := cheapest_below(lines, target)) is not None:
+                return target, best, cases
+    return None
 
 
 def over_targets(table: pd.DataFrame, column: str) -> pd.DataFrame:
@@ -309,19 +285,16 @@ def over_targets(table: pd.DataFrame, column: str) -> pd.DataFrame:
 def finding(tables: Tables) -> str:
     """Say with which engine the smallest error is cheapest, and how much the exact one costs."""
     table = tables["work-precision"]
-    exact, found = exact_cost(table), choices(table)
     if engines_of(table).empty:
-        return f"The exact solution takes {duration(exact)} a case."
-    if not found:
+        return f"The exact solution takes {duration(exact_cost(table))} a case."
+    if (found := cheapest(table)) is None:
         return f"No setting of an engine predicts every typical peak within {part(TARGETS[0])}."
-    asked = ALL if any(cases == ALL for _, cases in found) else TYPICAL
-    target = min(target for target, cases in found if cases == asked)
-    best, over = found[target, asked], ""
-    if exact > 0.0:
-        over = f", {best['over_exact']:.3g} times as long as the exact solution takes"
+    target, best, cases = found
+    exact = exact_cost(table if cases == ALL else table[table["set"] == TYPICAL])
+    over = f", {best['wall_s'] / exact:.3g} times as long as the exact solution takes"
     return (
-        f"{method_title(best['method'])}, predicts every {'typical ' * (asked == TYPICAL)}peak "
-        f"within {part(target)} in {duration(best['wall_s'])} a case{over}."
+        f"{method_title(best['method'])}, predicts every {'typical ' * (cases == TYPICAL)}peak "
+        f"within {part(target)} in {duration(best['wall_s'])} a case{over if exact > 0.0 else ''}."
     )
 
 
@@ -332,10 +305,6 @@ def shown(tables: Tables) -> Tables:
     costs = over_targets(typical, "wall_s")
     costs[costs.columns[1:]] /= exact_cost(typical)
     found = {
-        "The cheapest setting of an engine below an error, as with every finer one": pd.DataFrame(
-            {"below": target, "cases": cases, **best}
-            for (target, cases), best in choices(table).items()
-        ).drop(columns=["method", "value"], errors="ignore"),
         "The cheapest setting of each method below an error of typical peaks": over_targets(
             typical, "value"
         ),

@@ -162,14 +162,14 @@ def modified_is_closer(compared: pd.DataFrame) -> tuple[bool, str]:
     case = ["figure", "aspect", "width_m", "omega_over_p"]
     sizes = compared.assign(size=compared["error"].abs())
     both = sizes.pivot(index=case, columns="source", values="size")[[*PAPER_PAIR]].dropna()
-    right = compared.groupby("source")["agrees"].sum()
+    right, cases = compared.groupby("source")["agrees"].sum(), len(sizes.drop_duplicates(case))
     closer = int((both["modified"] < both["housner"]).sum())
     h, m = both.quantile([0.5, 0.9]).T.to_numpy()
     return (
         bool(m[0] < h[0] and closer > len(both) / 2),
         f"closer in {closer} of {len(both)} cases where all three survive; median error "
         f"{m[0]:.2%} against {h[0]:.2%}, p90 {m[1]:.2%} against {h[1]:.2%}; outcomes right in "
-        f"{right['modified']} against {right['housner']} of {len(sizes.drop_duplicates(case))} cases",
+        f"{right['modified']} against {right['housner']} of {cases} cases",
     )
 
 

@@ -97,7 +97,7 @@ def command(
     times = np.linspace(0.0, window, 1501) if plot else None
     case = Question(system=system, motion=motion, start=start, duration=window, times=times)
     place = place_of(computing, at_once=True)
-    rows = compare(case, sources, yours, place=place, effort=effort, estimate=estimate)
+    rows = compare(case, sources, yours, effort, place=place, estimate=estimate)
     note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
     if json:
         for record in records(rows, note):

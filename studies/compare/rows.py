@@ -18,10 +18,12 @@ from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.run import Place, here, run
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import ELSEWHERE, estimate_of, halved, published_trust
-from studies.sources.registry import DEFAULT_EFFORT, Effort
 
 if TYPE_CHECKING:
-    from studies.kit.options import Yours  # it loads the parser, which workers do without
+    from studies.kit.options import (  # it loads the parser, which workers do without
+        EffortOptions,
+        Yours,
+    )
 
 
 def window_of(system: System, motion: Motion, duration: float | None) -> float:
@@ -36,9 +38,9 @@ def compare(
     case: Question,
     sources: Sequence[str],
     yours: Yours,
+    effort: EffortOptions,
     *,
     place: Place = here,
-    effort: Effort = DEFAULT_EFFORT,
     estimate: bool = False,
 ) -> list[Row]:
     """Ask every source, and the exact solution besides; return a row for each.

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -21,7 +21,7 @@ from studies.kit.arguments import (
     several_or_none,
 )
 from studies.kit.store import usable_cores
-from studies.sources.registry import Accuracy, Effort, resolve
+from studies.sources.registry import Accuracy, resolve
 
 
 @Parameter(name="*")
@@ -70,7 +70,7 @@ class Running(Computing):
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
-class EffortOptions(Effort):
+class EffortOptions:
     """How finely the sources step that do.
 
     Attributes
@@ -83,6 +83,21 @@ class EffortOptions(Effort):
 
     step: Step | None = None
     accuracy: Annotated[Accuracy, one_of(Accuracy)] | None = None
+
+    @property
+    def own(self) -> bool:
+        """Whether every source steps as it sees fit."""
+        return self.step is None and self.accuracy is None
+
+    def options(self, name: str) -> dict[str, Any]:
+        """Return the options that this means for a source."""
+        source = resolve(name)
+        chosen: dict[str, Any] = {}
+        if self.step is not None and source.stepping:
+            chosen["step"] = self.step
+        if self.accuracy is not None and source.accurate:
+            chosen["accuracy"] = self.accuracy
+        return chosen
 
     def refuse_idle(self, sources: Sequence[str]) -> None:
         """Refuse an option that none of the sources takes."""

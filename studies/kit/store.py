@@ -217,12 +217,6 @@ class Store:
         runs = [*before.get("runs", ()), run]
         write_record(self.folder, {**record, "made": makers, "runs": runs})
 
-    def last(self) -> None:
-        """Write how long the run took, its drawing included."""
-        record = provenance_of(self.folder)
-        record["runs"][-1]["duration_s"] = round(time.perf_counter() - self._began, 3)
-        write_record(self.folder, record)
-
 
 def _read(base: sqlite3.Connection) -> Rows:
     rows = base.execute("SELECT key, made, row FROM rows").fetchall()

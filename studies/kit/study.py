@@ -102,7 +102,6 @@ class Study:
             tables = self.tabulate(pd.DataFrame(rows))
             store.finish(tables, makers_of(jobs, self.measure), len(rows), **asked)
         print(self.tell(out))
-        store.last()
         return exit_code(self.needed(rows))
 
     def read(self, folder: Path) -> dict[str, pd.DataFrame]:

@@ -191,33 +191,6 @@ Accuracy = Literal["loose", "standard", "tight"]
 """Of an engine whose steps land on impacts; `engines.scene.ACCURACIES` says how many steps."""
 
 
-@dataclass(frozen=True, slots=True)
-class Effort:
-    """How finely to step: p dt, or the accuracy of an engine that lands; None leaves it to them."""
-
-    step: float | None = None
-    accuracy: Accuracy | None = None
-
-    @property
-    def own(self) -> bool:
-        """Whether every source steps as it sees fit."""
-        return self.step is None and self.accuracy is None
-
-    def options(self, name: str) -> dict[str, Any]:
-        """Return the options that this means for a source."""
-        source = resolve(name)
-        chosen: dict[str, Any] = {}
-        if self.step is not None and source.stepping:
-            chosen["step"] = self.step
-        if self.accuracy is not None and source.accurate:
-            chosen["accuracy"] = self.accuracy
-        return chosen
-
-
-DEFAULT_EFFORT = Effort()
-"""Every source as finely as it sees fit."""
-
-
 GROUPS = {"core": core_engines, "engines": installed_engines}
 """Word -> the names of the engines for which it stands."""
 

@@ -14,7 +14,7 @@ from engines.declaration import Stepping
 from studies import precision
 from studies.kit.run import run
 from studies.measures.costs import LEAST_RUNS, LEAST_S, best_of, cost_text, enough
-from studies.precision import SCENES, STUDY, choices, jobs, measure
+from studies.precision import SCENES, STUDY, cheapest, jobs, measure
 
 MOST_S = 4.0 * LEAST_S
 ONE_CONTACT = {"drake": 0.6}
@@ -66,12 +66,8 @@ def test_the_cheapest_setting_holds_with_every_finer_one_and_is_compared_to_the_
     near = [line("mujoco landing", value, math.inf, 1.0, "near overturning") for value in
             (0.05, 0.02, 0.01)]  # fmt: skip
     table = pd.DataFrame([*lines, *near])
-    found = choices(table)
-    assert found.keys() == {(0.1, "typical"), (0.01, "typical")}
-    assert [found[key]["value"] for key in found] == [0.05, 0.01]
-    best = found[0.01, "typical"]
-    assert best["over_exact"] == pytest.approx(400.0)
-    assert (best["typical_error"], best["near_error"]) == (5e-3, math.inf)
+    target, best, cases = cheapest(table)
+    assert (target, best["value"], cases) == (0.01, 0.01, "typical")
     said = precision.finding({"work-precision": table})
     assert said.startswith("MuJoCo") and "4 ms" in said and "400" in said and "typical" in said
     assert "10 µs" in precision.finding({"work-precision": table.head(2)})
@@ -98,6 +94,7 @@ def test_a_wrong_outcome_is_an_infinite_error_and_each_table_has_its_rows():
     assert tables["precision"]["figure"].dtype == int
     (free,) = tables[SCENES].to_dict("records")
     assert free["error"] == pytest.approx(0.0, abs=1e-4)
+    assert list(STUDY.shown(tables).values())[-1]["cost"].item() == free["wall_s"] / free["plain_s"]
     assert {row["table"] for row in STUDY.needed(rows)} == {"precision"}
 
 

@@ -12,7 +12,8 @@ from records import AT2
 
 from analytic.response import Response
 from studies.__main__ import run
-from studies.sources.registry import SOURCES, Effort, Source
+from studies.kit.options import EffortOptions
+from studies.sources.registry import SOURCES, Source
 
 REFUSED = """
 # numbers of each kind, and words of a few
@@ -248,7 +249,7 @@ def test_what_arithmetic_raises_is_one_line_and_what_a_mistake_does_is_not(
 
 
 def test_accuracy_and_step_reach_only_the_sources_they_are_for():
-    effort = Effort(step=1e-3, accuracy="tight")
+    effort = EffortOptions(step=1e-3, accuracy="tight")
     assert effort.options("exact") == {}
     assert effort.options("rk4") == {"step": 1e-3}
     assert effort.options("pybullet:tuned") == {"step": 1e-3}
