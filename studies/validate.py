@@ -15,7 +15,7 @@ from cyclopts import Parameter
 from analytic import simulate
 from analytic.block import Rocker
 from analytic.response import Outcome
-from studies.cases.drawn import Drawn, RandomCase, census, draw
+from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import Count, one_of, refuse_both
 from studies.kit.jobs import Job, Question, Row
@@ -114,14 +114,11 @@ def _rocks(case: RandomCase) -> bool:
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return errors and what was drawn, or factors."""
+    """Return errors, or factors."""
     if "half" in rows:
         lines = beside_errors(rows)
         return {"estimate": rows, "estimates": lines, "factors": factors(lines)}
-    errors = with_reference(rows.drop(columns="seed"))
-    scene: Drawn = "frame" if "load" in rows else "block"
-    left = census(int(rows["seed"].iloc[0]), rows["case"].nunique(), scene)
-    return {"errors": errors, "drawn": left}
+    return {"errors": with_reference(rows.drop(columns="seed"))}
 
 
 def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
@@ -166,7 +163,7 @@ def finding(tables: Tables) -> str:
 
 
 def shown(tables: Tables) -> Tables:
-    """Return the lines of each source, and what was drawn."""
+    """Return the lines of each source."""
     if "factors" in tables:
         return {"Estimates, errors, and the factors between them": tables["factors"]}
     errors, s = tables["errors"], sensitivity_of(tables["errors"])
@@ -174,7 +171,6 @@ def shown(tables: Tables) -> Tables:
         "Errors of the peak where both survive": quantiles(errors),
         f"The same where S < {WELL_CONDITIONED:g}: by how many per cent a peak moves\nfor one of "
         "the pulse, or of the velocity ratio of impacts": quantiles(errors[s < WELL_CONDITIONED]),
-        "Cases that were drawn": tables["drawn"],
     }
 
 
@@ -205,10 +201,9 @@ STUDY = Study(
     help="""Random blocks: H/B from 1.2 to 12, B from 0.02 to 10 m; pulses of 1.02 to 4 onsets.
 
 Outcomes, quantiles of the error, and how far a small error of the pulse moves the peak of each
-case: its condition numbers, and its sensitivity to errors of 1e-6 and 1e-4. Writes errors.csv
-and drawn.csv. With --halves it writes estimate.csv, estimates.csv and factors.csv: how
-far off an answer is according to the engine itself at half the step. Each needs a folder of its
-own.""",
+case: its condition numbers, and its sensitivity to errors of 1e-6 and 1e-4. Writes errors.csv.
+With --halves it writes estimate.csv, estimates.csv and factors.csv: how far off an answer is
+according to the engine itself at half the step. Each needs a folder of its own.""",
     sources=core_sources(),
     options=Options,
     quick="Fewer random cases: 100; with --halves 20, and 10 that test.",

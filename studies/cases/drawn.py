@@ -9,12 +9,10 @@ from itertools import count
 from typing import Literal
 
 import numpy as np
-import pandas as pd
 
 from analytic import RockingFrame, frame_demands, simulate
 from analytic.block import RigidBlock, Rocker
 from analytic.motion import SinePulse
-from analytic.response import Outcome, Response
 from engines.scene import BEAM_DEPTH, SPACING
 
 LEAST_NORMAL = 0.2
@@ -25,16 +23,6 @@ FRICTION = 1.0
 
 Drawn = Literal["block", "frame"]
 """Scenes of which random cases are drawn."""
-
-KEPT = "kept"
-NEAR, LIFTED, SLIDES, TIPS = "near", "lifted", "slides", "tips"
-LEFT_OUT = {
-    NEAR: f"the normal force falls to {LEAST_NORMAL:g} of the weight or less",
-    LIFTED: "the normal force is lost: the pivot would have to be held down",
-    SLIDES: f"a foot or the beam would slide by a friction of {FRICTION:g}",
-    TIPS: "the beam would tip",
-}
-"""Why cases that were drawn are left out; the last two are of frames."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,15 +67,15 @@ def draw(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
 
     H/B from 1.2 to 12, B from 0.02 to 10 m, 1 to 4 half cycles, amplitudes from 1.02 to 4 onsets
     and omega/p from 0.3 to 12, width and frequency with uniform logarithms. Frames have 2 to 5
-    columns and loads from 0.1 to 10, with uniform logarithms. `fate_of` says which are kept.
+    columns and loads from 0.1 to 10, with uniform logarithms. Kept are
+    those of which the reference is sure.
     """
-    kept = (drawn for drawn, exact in everything(seed, scene) if fate_of(drawn, exact) == KEPT)
+    kept = filter(_is_sure, _everything(seed, scene))
     for case, drawn in enumerate(kept):
         yield replace(drawn, case=case)
 
 
-def everything(seed: int, scene: Drawn = "block") -> Iterator[tuple[RandomCase, Response]]:
-    """Yield all that is drawn, kept or not and numbered from 0, with its exact response."""
+def _everything(seed: int, scene: Drawn) -> Iterator[RandomCase]:
     generator = np.random.default_rng(seed)
     for number in count():
         aspect = float(generator.uniform(1.2, 12.0))
@@ -103,36 +91,15 @@ def everything(seed: int, scene: Drawn = "block") -> Iterator[tuple[RandomCase, 
             columns = int(generator.integers(2, 6))
             load = math.exp(generator.uniform(math.log(0.1), math.log(10.0)))
             drawn = RandomFrame(**asdict(drawn), columns=columns, load=load)
-        yield drawn, simulate(drawn.block, drawn.motion)
+        yield drawn
 
 
-def fate_of(drawn: RandomCase, exact: Response) -> str:
-    """Return KEPT, or the name in LEFT_OUT of why a case with this exact response is not."""
-    system, normal = drawn.block, exact.min_normal
-    if isinstance(system, RockingFrame):
-        apart, depth = SPACING * system.height, BEAM_DEPTH * system.height
-        needs = frame_demands(system, drawn.motion, spacing=apart, depth=depth)
-        if needs.spacing >= apart:
-            return TIPS
-        if needs.pressing > 0.0 and max(needs.base, needs.top) > FRICTION:
-            return SLIDES
-        normal = needs.pressing
-    return KEPT if normal > LEAST_NORMAL else NEAR if normal > 0.0 else LIFTED
-
-
-def census(seed: int, kept: int, scene: Drawn = "block") -> pd.DataFrame:
-    """Count what is drawn until enough cases are kept, and say why the others are left out.
-
-    The columns overturned and share are of the exact solution.
-    """
-    left = [name for name in LEFT_OUT if scene == "frame" or name not in (SLIDES, TIPS)]
-    counts = {name: [0, 0] for name in ("drawn", KEPT, *left)}
-    for drawn, exact in everything(seed, scene):
-        if counts[KEPT][0] == kept:
-            break
-        for name in ("drawn", fate_of(drawn, exact)):
-            counts[name][0] += 1
-            counts[name][1] += exact.outcome is Outcome.OVERTURNED
-    table = pd.DataFrame.from_dict(counts, orient="index", columns=["cases", "overturned"])
-    table = table.assign(share=table["overturned"] / table["cases"])
-    return table.rename_axis("set").reset_index().assign(why=[LEFT_OUT.get(n, "") for n in counts])
+def _is_sure(drawn: RandomCase) -> bool:
+    """Return whether the exact motion needs no hold: nothing lifts off, slides or tips."""
+    system = drawn.block
+    if not isinstance(system, RockingFrame):
+        return simulate(system, drawn.motion).min_normal > LEAST_NORMAL
+    apart, depth = SPACING * system.height, BEAM_DEPTH * system.height
+    needs = frame_demands(system, drawn.motion, spacing=apart, depth=depth)
+    holds = max(needs.base, needs.top) <= FRICTION and needs.spacing < apart
+    return holds and needs.pressing > LEAST_NORMAL

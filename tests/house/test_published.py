@@ -12,7 +12,6 @@ from PIL import Image
 from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
 from engines import ENGINES, installed_engines
 from studies import overturning, respond, restitution, scenes, sweep
-from studies.cases.drawn import census
 from studies.cases.paper import Case
 from studies.kit.pictures import save_all
 from studies.kit.run import makers_of
@@ -74,7 +73,6 @@ FOLLOWING = {
     "restitution": lambda found: restitution.tabulate(
         found["restitution"].assign(source="", outcome="", message="")
     ),
-    "validate": lambda _: {"drawn": census(1, 500)},
     "estimate": lambda found: {"factors": factors(found["estimates"])},
 }
 """Folder -> what makes its tables, or some, of those of its rows."""

@@ -11,14 +11,7 @@ from given import BLOCK, PULSE
 from analytic import frame_demands, simulate
 from engines.scene import BEAM_DEPTH, SPACING
 from studies import respond, validate
-from studies.cases.drawn import (
-    FRICTION,
-    KEPT,
-    LEAST_NORMAL,
-    draw,
-    everything,
-    fate_of,
-)
+from studies.cases.drawn import FRICTION, LEAST_NORMAL, draw
 from studies.kit.jobs import Job, Question
 from studies.kit.run import run
 from studies.measures.differences import sensitivity_of
@@ -48,14 +41,15 @@ def test_cases_keep_their_ranges_and_their_reference_valid():
         assert simulate(case.block, case.motion).min_normal > LEAST_NORMAL
 
 
-def test_random_frames_that_are_left_out_have_the_fault_that_is_named():
-    assert {case.columns for case in islice(draw(1, "frame"), 20)} == {2, 3, 4, 5}
-    for drawn, exact in islice(everything(1, "frame"), 40):
-        frame, fate = drawn.block, fate_of(drawn, exact)
-        sizes = {"spacing": SPACING * frame.height, "depth": BEAM_DEPTH * frame.height}
-        needs = frame_demands(frame, drawn.motion, **sizes)
-        tips, slides = needs.spacing >= sizes["spacing"], max(needs.base, needs.top) > FRICTION
-        assert {KEPT: not (tips or slides), "slides": slides, "tips": tips}.get(fate, True)
+def test_random_frames_neither_slide_nor_tip():
+    kept = list(islice(draw(1, "frame"), 8))
+    assert {2, 5} < {case.columns for case in kept} <= {2, 3, 4, 5}
+    for case in kept:
+        height = case.block.height
+        sizes = {"spacing": SPACING * height, "depth": BEAM_DEPTH * height}
+        needs = frame_demands(case.block, case.motion, **sizes)
+        assert needs.spacing < sizes["spacing"] and needs.pressing > LEAST_NORMAL
+        assert max(needs.base, needs.top) <= FRICTION
 
 
 def table(rows, **columns):
@@ -180,10 +174,10 @@ def tables_of(*sources, **options):
     return STUDY.tabulate(pd.DataFrame(run(asked, STUDY.measure)))
 
 
-def test_every_draw_is_counted_and_the_exact_solution_has_no_error():
+def test_the_exact_solution_has_no_error():
     tables = tables_of("exact", "housner", cases=30, seed=5)
-    errors, drawn = tables["errors"].set_index("source"), tables["drawn"].set_index("set")["cases"]
-    assert drawn["kept"] == 30 and drawn["drawn"] == drawn[["kept", "near", "lifted"]].sum()
+    errors = tables["errors"].set_index("source")
+    assert len(errors) == 2 * 30
     assert errors.loc["exact", "error"].abs().max() < 1e-9 < errors.loc["housner", "error"].max()
     assert (errors["sensitivity"] >= 0.0).all()
     frames = tables_of("mujoco", scene="frame", cases=2)["errors"]
