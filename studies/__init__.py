@@ -129,10 +129,10 @@ def side_by_side(
 
     from analytic.checks import finite
     from studies.cases.refusal import BadInputError
-    from studies.compare.rows import compare, records, window_of
+    from studies.compare.rows import compare, records
     from studies.kit.jobs import Question
     from studies.kit.options import EffortOptions, Yours
-    from studies.kit.scene_options import refuse_endless
+    from studies.kit.scene_options import window_of
 
     if isinstance(sources, str) or not (sources := list(sources)):
         raise ValueError(f"sources is {sources!r}; it must be a list of one name or more")
@@ -144,8 +144,7 @@ def side_by_side(
         for name, value in (("duration", duration), ("friction", friction), ("dt", dt))
     )
     try:
-        window = window_of(block, motion, duration)
-        refuse_endless(block, window, duration=duration, dt=dt)
+        window = window_of(block, motion, duration, dt=dt)
         case = Question(system=block, motion=motion, start=start, duration=window)
         yours = Yours(friction=friction, dt=dt)
         rows = compare(case, sources, yours, EffortOptions(), estimate=estimate)

@@ -9,15 +9,15 @@ import numpy as np
 
 from analytic.response import Outcome
 from analytic.slide import SlidingBlock
-from studies.cases.paper import free_rocking_window
 from studies.cases.refusal import BadInputError
+from studies.compare.rows import measure
 from studies.kit.arguments import Place, Sources, check_writable
 from studies.kit.cluster import place_of
-from studies.kit.jobs import Job, Question, Row, ask, summary
+from studies.kit.jobs import Job, Question, Row
 from studies.kit.options import Computing, Yours
 from studies.kit.run import Place as Where
 from studies.kit.run import exit_code, here, run
-from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless
+from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
 from studies.sources.registry import core_sources
 
 DEFAULT_SOURCES = ("exact", "housner", *core_sources("default"), *core_sources())
@@ -52,8 +52,7 @@ def command(
         raise BadInputError(f"--sources are {len(sources)}; they must be at most {MOST_SOURCES}")
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
-    window = free_rocking_window(system, motion)
-    refuse_endless(system, window, dt=yours.dt)
+    window = window_of(system, motion, dt=yours.dt)
     frames = window * FRAMES_A_SECOND
     if not frames < MOST_FRAMES:
         words = f"{window:g} s are {frames:.3g} frames"
@@ -87,16 +86,10 @@ def moved(case: Question, sources: Sequence[str], yours: Yours, place: Where = h
     jobs = [Job(labels={}, case=case, source=name, options=own[name]) for name in sources]
     rows, times = run(jobs, measure, place), np.asarray(case.times)
     for row in rows:
-        if (history := row["history"]) is not None:
+        if (history := row["response"].history) is not None:
             row["theta"] = np.interp(times, history.time, history.theta)
             if row["outcome"] == "overturned" and not isinstance(case.system, SlidingBlock):
                 # a block that is lost from sight when its outcome is decided has fallen
                 beyond = times > history.time[-1]
                 row["theta"][beyond] = math.copysign(math.pi / 2, history.theta[-1])
     return rows
-
-
-def measure(job: Job) -> Row:
-    """Return the columns that every row has, and the history."""
-    response = ask(job)
-    return {**summary(response), "history": response.history}

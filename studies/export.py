@@ -14,16 +14,16 @@ from engines.run import ground
 from engines.run.slide import LEAST_SLIP, SLIP_RATE
 from engines.settings import perhaps
 from engines.world import Script
-from studies.cases.paper import free_rocking_window
 from studies.cases.refusal import BadInputError
+from studies.compare.rows import measure
 from studies.kit.arguments import Place, Step, TimeLimit, refuse_both
 from studies.kit.cluster import place_of
 from studies.kit.identity import version_of
-from studies.kit.jobs import Job, Question, Row, ask, summary
+from studies.kit.jobs import Job, Question
 from studies.kit.options import Computing, Yours
 from studies.kit.run import exit_code, run
 from studies.kit.say import listed
-from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless
+from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
 from studies.kit.store import project_version
 from studies.kit.tables import draft
 from studies.sources.registry import scene_of
@@ -66,8 +66,7 @@ def command(
     motion, start = excitation.pose(system)
     if out.exists() and any(out.iterdir()):
         raise BadInputError(f"--out is {str(out)!r}; it must be a new or an empty folder")
-    window = free_rocking_window(system, motion)
-    refuse_endless(system, window, step=step, dt=yours.dt)
+    window = window_of(system, motion, step=step, dt=yours.dt)
     case = Question(system=system, motion=motion, start=start, duration=window)
     options = yours.options([source], system)[source] | ({} if step is None else {"step": step})
     name, _, preset = source.partition(":")
@@ -77,7 +76,9 @@ def command(
     rows = run(jobs, measure, place_of(Computing(jobs=1, time_limit=time_limit), at_once=True))
     if code := exit_code(rows):
         return code
-    exact, found = (row["found"] for row in rows)
+    answers = [row["response"] for row in rows]
+    slides = isinstance(system, SlidingBlock)
+    exact, found = (each.slips if slides else each.peak_ratio for each in answers)
     if not found:
         raise BadInputError(
             f"--engine is {engine!r}; what is exported must move there, and stays at rest"
@@ -109,13 +110,6 @@ def source_of(engine: str) -> str:
         words = f"its preset must have equal steps: {', '.join(equal)}"
         raise BadInputError(f"--engine is {engine!r}; {words}")
     return engine if colon else f"{name}:tuned"
-
-
-def measure(job: Job) -> Row:
-    """Return the summary, and what a script is to find: the peak, or slips where nothing rocks."""
-    response = ask(job)
-    slides = isinstance(job.case.system, SlidingBlock)
-    return {**summary(response), "found": response.slips if slides else response.peak_ratio}
 
 
 def script_of(use: Use) -> Script:

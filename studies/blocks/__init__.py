@@ -25,12 +25,11 @@ from analytic.simulate import simulate
 from analytic.start import strongest
 from studies.blocks.cabinets import Cabinet, read_cabinets
 from studies.cases.accelerograms import Baseline, baseline_note, read_record
-from studies.cases.paper import free_rocking_window
 from studies.kit import arguments
 from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
 from studies.kit.options import Running
 from studies.kit.say import capital, out_of
-from studies.kit.scene_options import refuse_endless
+from studies.kit.scene_options import window_of
 from studies.kit.store import provenance_of
 from studies.kit.study import Figures, Study, Tables
 from studies.kit.tables import write_text
@@ -93,8 +92,7 @@ def jobs(
         block = cabinet.system if engine or source == "exact" else cabinet.block
         if scale == ALL_SCALES and not isinstance(block, RigidBlock):
             continue
-        window = free_rocking_window(block, motion)
-        refuse_endless(block, window)
+        window = window_of(block, motion)
         moves = {"record": name, "record_digest": digests[name], "baseline": baseline}
         rubs = engine and cabinet.friction is not None
         found.append(

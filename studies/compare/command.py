@@ -17,7 +17,7 @@ from analytic.start import strongest
 from engines.scene import System
 from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import PULSES
-from studies.compare.rows import compare, records, window_of
+from studies.compare.rows import compare, records
 from studies.kit.arguments import (
     Place,
     Positive,
@@ -32,7 +32,7 @@ from studies.kit.jobs import Question, Row
 from studies.kit.options import Computing, EffortOptions, Yours
 from studies.kit.run import exit_code
 from studies.kit.say import aligned, duration, number
-from studies.kit.scene_options import Excitation, Height, Standing, Width, refuse_endless
+from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
 from studies.sources.registry import core_sources
 
 OF_THE_CASE = ("kappa", "sensitivity", "min_normal", "friction_needed")
@@ -92,8 +92,7 @@ def command(
     check_plot(plot)
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
-    window = window_of(system, motion, duration)
-    refuse_endless(system, window, duration=duration, step=effort.step, dt=yours.dt)
+    window = window_of(system, motion, duration, step=effort.step, dt=yours.dt)
     times = np.linspace(0.0, window, 1501) if plot else None
     case = Question(system=system, motion=motion, start=start, duration=window, times=times)
     place = place_of(computing, at_once=True)

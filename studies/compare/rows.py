@@ -8,12 +8,9 @@ from statistics import median
 from typing import TYPE_CHECKING, Any
 
 from analytic import RigidBlock
-from analytic.motion import Motion
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
 from engines.scene import System
-from studies.cases.paper import free_rocking_window
-from studies.cases.refusal import BadInputError
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.run import Place, here, run
 from studies.measures.differences import conditioning_of_one
@@ -24,14 +21,6 @@ if TYPE_CHECKING:
         EffortOptions,
         Yours,
     )
-
-
-def window_of(system: System, motion: Motion, duration: float | None) -> float:
-    """Return for how long a block is watched [s]: as given, or the motion and 8/p."""
-    if duration is not None and duration < motion.duration:
-        least = f"the length of the motion, {motion.duration:.6g} s"
-        raise BadInputError(f"--duration is {duration:g}; it must be at least {least}")
-    return free_rocking_window(system, motion) if duration is None else duration
 
 
 def compare(

@@ -17,7 +17,7 @@ from analytic.slide import SlidingBlock
 from analytic.start import LEAST_TILT, strongest
 from engines.scene import System
 from studies.cases.accelerograms import Baseline, read_record
-from studies.cases.paper import PULSES
+from studies.cases.paper import PULSES, free_rocking_window
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import (
     Count,
@@ -226,15 +226,22 @@ class Standing:
         return block
 
 
-def refuse_endless(
+def window_of(
     block: System,
-    watched_s: float,
-    *,
+    motion: Motion,
     duration: float | None = None,
+    *,
     step: float | None = None,
     dt: float | None = None,
-) -> None:
-    """Refuse what no computer sees the end of: a time [s], and steps, p dt or [s]."""
+) -> float:
+    """Return how long a block is watched [s]: as given, or the motion and 8/p.
+
+    What no computer sees the end of is refused, with a step p dt, or [s].
+    """
+    if duration is not None and duration < motion.duration:
+        least = f"the length of the motion, {motion.duration:.6g} s"
+        raise BadInputError(f"--duration is {duration:g}; it must be at least {least}")
+    watched_s = free_rocking_window(block, motion) if duration is None else duration
     most_s = MOST_TIME / block.p
     if watched_s > most_s:
         asked = (
@@ -248,8 +255,9 @@ def refuse_endless(
         )
     for name, given, unit in (("step", step, 1.0 / block.p), ("dt", dt, 1.0)):
         if given is not None and watched_s > MOST_STEPS * given * unit:
-            least = watched_s / (MOST_STEPS * unit)
+            smallest = watched_s / (MOST_STEPS * unit)
             raise BadInputError(
-                f"--{name} is {given:g}; it must be at least {least:.4g} for a run of "
+                f"--{name} is {given:g}; it must be at least {smallest:.4g} for a run of "
                 f"{watched_s:.4g} s, so that this takes at most {MOST_STEPS:g} steps"
             )
+    return watched_s
