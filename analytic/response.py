@@ -26,6 +26,7 @@ class Reason(enum.Enum):
     SANK = "the block sank through the base"
     THROWN = "the block was thrown off the base"
     SLID = "the pivot slid away along the base"
+    PARTED = "the columns of a frame parted"
     UNDECIDED = "not decided within the limits of time and steps"
     FAULT = "the engine reports a fault of its own"
     UNAVAILABLE = "the engine cannot do what was asked, or is not installed"

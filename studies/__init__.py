@@ -45,7 +45,7 @@ def respond(
         Rotation theta [rad] and angular velocity [rad/s] at time zero; at rest by default.
     duration : float, optional
         Observe until this time [s], not before the motion ends. By default the response is
-        followed until its peak is decided, and no longer.
+        followed until its peak is decided, and an engine's frame for 8/p after the motion.
     times : array, optional
         Ground times [s] at which `Response.history` is sampled. Without a duration, "exact" and the
         other models go on to the last of them, and who steps as far as is needed to decide.

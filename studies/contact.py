@@ -18,9 +18,9 @@ from analytic.frame import RockingFrame
 from analytic.response import Outcome
 from engines import ENGINES, core_engines
 from engines.declaration import BEST, BY_DEFAULT, DEFAULT, OWN_STEPS, Stepping
-from engines.scene import Scene
+from engines.scene import Scene, free_rocking_window
 from studies.cases.drawn import Drawn, RandomCase, draw
-from studies.cases.paper import Case, chosen_cases, free_rocking_window
+from studies.cases.paper import Case, chosen_cases
 from studies.cases.refusal import BadInputError
 from studies.cases.variants import Variant, variants
 from studies.kit.arguments import Engines, one_of

@@ -10,7 +10,8 @@ import pandas as pd
 from cyclopts import Parameter
 
 from analytic.response import Outcome
-from studies.cases.paper import HISTORIES, HistoryCase, free_rocking_window
+from engines.scene import free_rocking_window
+from studies.cases.paper import HISTORIES, HistoryCase
 from studies.kit.arguments import figures as some_figures
 from studies.kit.arguments import sources_option
 from studies.kit.jobs import Job, Question, Row, ask, summary

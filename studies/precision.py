@@ -17,7 +17,8 @@ from analytic import RigidBlock, simulate
 from analytic.response import Outcome, Response
 from engines import ENGINES
 from engines.declaration import Engine
-from studies.cases.paper import HISTORIES, Case, chosen_cases, free_rocking_window
+from engines.scene import free_rocking_window
+from studies.cases.paper import HISTORIES, Case, chosen_cases
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import duration, part
 from studies.kit.study import Figures, Study, Tables

@@ -6,6 +6,17 @@ See EQUATIONS.md, "The rocking frame".
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from engines.run.watch import (
+    BEAM_LOST,
+    BEAM_SLIPPED,
+    BEAM_THROWN,
+    HOLD_WIDTHS,
+    PARTED,
+    PARTED_PART,
+    SLIDE_WIDTHS,
+    THROWN_WIDTHS,
+    Watch,
+)
 from engines.scene import Layout
 from engines.world import FloatArray
 
@@ -17,13 +28,15 @@ class Spread:
     Attributes
     ----------
     columns : how many there are, and the number of the beam's row; 0 where there is no beam
-    homes : where the beam's centre is while a column's is at 0 [m]
-    parting, tilt : largest difference of two columns' rotations, largest one of the beam [rad]
-    drift, slide : how far it slid along the tops [m] at most, at all and until they pass alpha
+    homes, level : where the beam's centre is while a column's is at 0 [m]
+    parting : largest difference of two columns' rotations until one passes alpha [rad]
+    tilt : largest rotation of the beam [rad]
+    drift, slide : how far it slid along the tops [m] at most, at all and until one passes alpha
     """
 
     columns: int = 0
     homes: float = 0.0
+    level: float = 0.0
     parting: float = 0.0
     tilt: float = 0.0
     drift: float = 0.0
@@ -34,23 +47,43 @@ def begin_spread(layout: Layout) -> Spread:
     """Return where nothing has parted; the body after those that rock is a beam."""
     if not 0 < layout.rocking < len(layout.bodies):
         return Spread()
-    beam, first = layout.bodies[layout.rocking], layout.bodies[0]
-    return Spread(columns=layout.rocking, homes=beam.home[0] - 2.0 * first.home[0])
+    (x, z), (column_x, column_z) = (layout.bodies[body].home for body in (layout.rocking, 0))
+    return Spread(layout.rocking, x - 2.0 * column_x, z - 2.0 * column_z)
 
 
-def see_spread(spread: Spread, state: FloatArray, alpha: float) -> None:
-    """Take in a state (bodies, 4), a `Pose` a row, of columns of the slenderness alpha [rad]."""
+def see_spread(spread: Spread, watch: Watch, state: FloatArray) -> None:
+    """Take in a state (bodies, 4), a `Pose` a row; what comes apart is a problem of the watch."""
     columns = spread.columns
     if columns == 0:
         return
+    least = most = state[0][2]
     for column in range(1, columns):
-        spread.parting = max(spread.parting, abs(state[column][2] - state[0][2]))
+        least, most = min(least, state[column][2]), max(most, state[column][2])
     spread.tilt = max(spread.tilt, abs(state[columns][2]))
     # a corner on top of a column moves twice as far as the column's centre
     slid = state[columns][0] - 2.0 * state[0][0] - spread.homes
     spread.drift = max(spread.drift, abs(slid))
-    if abs(state[0][2]) <= alpha:
+    if max(most, -least) <= watch.alpha:
         spread.slide = max(spread.slide, abs(slid))
+        spread.parting = max(spread.parting, most - least)
+        raised = state[columns][1] - 2.0 * state[0][1] - spread.level
+        come_apart(spread, watch, raised)
+
+
+def come_apart(spread: Spread, watch: Watch, raised: float) -> None:
+    """See whether the frame is one no longer, its beam so far above the columns' tops [m]."""
+    width = 2.0 * watch.half_width
+    watch.beam_slide = spread.slide
+    if spread.parting > PARTED_PART * watch.alpha:
+        watch.problem, watch.far = PARTED, spread.parting / watch.alpha
+    elif raised > THROWN_WIDTHS * width:
+        watch.problem, watch.far = BEAM_THROWN, raised
+    elif watch.slides:
+        return
+    elif watch.lands and spread.slide > HOLD_WIDTHS * width:
+        watch.problem, watch.far = BEAM_SLIPPED, spread.slide
+    elif spread.slide > SLIDE_WIDTHS * width:
+        watch.problem, watch.far = BEAM_LOST, spread.slide
 
 
 def observables_of(spread: Spread, alpha: float) -> Mapping[str, float]:

@@ -107,8 +107,7 @@ def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
     if first.slide.on:
         see_slide(first.slide, lists.rows[0], lists.events[0], pace.time, pose_in(state, 0))
         return not (first.slide.done or first.slide.problem)
-    see_spread(first.spread, state, first.watch.alpha)
-    first.watch.beam_slide = first.spread.slide
+    see_spread(first.spread, first.watch, state)
     goes_on = False
     for body in range(len(runs)):
         watch = runs[body].watch
@@ -225,7 +224,7 @@ def pays_to_compile(scene: Scene, dt_s: float) -> bool:
         return False
     if patience is None:
         patience = LOADING + (0 if are_compiled(PACKAGE) else COMPILING)
-    patience -= max(scene.motion.duration, scene.duration or 0.0) / dt_s
+    patience -= scene.watched / dt_s
     return patience < 0.0 or Kernel.cases == math.inf  # there are many cases to come
 
 

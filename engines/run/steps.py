@@ -45,7 +45,7 @@ class Pace:
     dt, part, gravity : ordinary step [s]; moment of a step's velocity, as its part; [m/s2]
     felt : whether a block on a base at rest carries the body force of the base's acceleration
     same : difference [s] of two times that are the same
-    motion_end, end : of the motion and of the observation [s]
+    motion_end, end : of the motion, and of the observation at the least [s]
     time, last_dt : end and length of the last step [s]
     velocity, place : of the base at the moment of the last velocity [m/s], and at the step's end
     stops, loads : how many have passed
@@ -92,7 +92,7 @@ def begin_pace(
         felt=scene.frame != "world",
         same=max(SAME_TIME * dt_s, resolution.time_s),
         motion_end=scene.motion.duration,
-        end=math.inf if scene.duration is None else scene.duration,
+        end=scene.watched,
     )
 
 
@@ -155,8 +155,7 @@ def timetable(scene: Scene, same: float) -> tuple[FloatArray, FloatArray]:
     """
     block = scene.system
     loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha))
-    ends = () if scene.duration is None else (scene.duration,)
-    stops = {*scene.motion.breakpoints, *ends, *(t for load in loads for t in load[:2])}
+    stops = {*scene.motion.breakpoints, scene.watched, *(t for load in loads for t in load[:2])}
     later = [*sorted(stop for stop in stops if stop > same), math.inf]
     return np.array(later), np.array([*loads, NEVER])
 

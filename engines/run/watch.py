@@ -78,6 +78,10 @@ SINK_WIDTHS = 0.05
 PIVOT_SLID = "the pivot slid {:.3g} m along the base"
 BEAM_SLID = "the beam slid {:.3g} m along the columns' tops"
 
+PARTED_PART = 0.1
+"""Columns of a frame whose rotations differ by more than this part of alpha have parted: below the
+beam their tops slide by as much of the width as a pivot may."""
+
 PROPPED_PART = 0.5
 """Part of alpha. A block that leans by less, and is neither held nor shaken, turns faster within
 `REST_TIME` than one at rest may."""
@@ -87,6 +91,7 @@ LYING, LYING_PART = 0.5 * math.pi, 0.9
 where it is lies on a soft contact."""
 
 NO_PROBLEM, DIVERGED, SANK, THROWN, SLID, SLIPPED, BEAM_SLIPPED = range(7)
+BEAM_LOST, BEAM_THROWN, PARTED = range(7, 10)
 """Why the response is no longer that of a rocking block."""
 
 UPLIFT, IMPACT, REST = 0.0, 1.0, 2.0
@@ -111,7 +116,8 @@ class Watch:
         that after which it is at rest [s], and the rate up to which it may turn then [rad/s]
     fall, least_fall : rate squared over the rotation [rad/s2] with which it falls back, and the
         least rotation [rad] from which a fall is seen as one
-    motion_end, end : of the motion, and of the observation [s]
+    motion_end, watched : end of the motion, and of the observation at the least [s]
+    timed : it ends then, decided or not
     slides, lands, keeps_rows : it is meant to slide; steps land on impacts of a pivot that has to
         hold; a history is wanted
     resting, rocked, lifted, crossed : it is at rest, has left it at some time, is aloft at the last
@@ -147,7 +153,8 @@ class Watch:
     fall: float
     least_fall: float
     motion_end: float
-    end: float
+    watched: float
+    timed: bool
     slides: bool
     lands: bool
     keeps_rows: bool
@@ -219,7 +226,8 @@ def begin_watch(
         fall=2.0 * FALL_PART * weight,
         least_fall=0.5 * weight * (FALL_STEPS * dt_s) ** 2,
         motion_end=scene.motion.duration,
-        end=math.inf if scene.duration is None else scene.duration,
+        watched=scene.watched,
+        timed=scene.duration is not None,
         slides=scene.friction == 0.0,
         lands=lands,
         keeps_rows=scene.times is not None,
@@ -318,8 +326,6 @@ def check(watch: Watch, pose: Pose, low: float, sine: float, cosine: float) -> N
         return
     elif watch.lands and watch.slide > HOLD_WIDTHS * width:
         watch.problem, watch.far = SLIPPED, watch.slide
-    elif watch.lands and watch.beam_slide > HOLD_WIDTHS * width:
-        watch.problem, watch.far = BEAM_SLIPPED, watch.beam_slide
     elif watch.slide > SLIDE_WIDTHS * width:
         watch.problem, watch.far = SLID, watch.slide
 
@@ -415,8 +421,8 @@ def decide(watch: Watch, row: Row) -> None:
     still = row.time - watch.turned_at >= watch.rest_time
     lies = size >= LYING or (still and size > LYING_PART * LYING)
     watch.overturned = lies or (over and size > watch.alpha and outward)
-    settled = over and watch.end == math.inf and (watch.turned or (watch.resting and still))
-    watch.done = watch.overturned or settled or row.time >= watch.end
+    decided = watch.timed or watch.turned or (watch.resting and still)
+    watch.done = watch.overturned or (decided and row.time >= watch.watched)
 
 
 def begin_swing(watch: Watch, side: float, from_rest: bool) -> None:
@@ -508,6 +514,9 @@ def problem_of(problem: int, far: float, width: float) -> Problem | None:
         SANK: (Reason.SANK, f"the block sank {far:.3g} m, through the base"),
         THROWN: (Reason.THROWN, f"the block was thrown {far:.3g} m off the base"),
         SLID: (Reason.SLID, PIVOT_SLID.format(far)),
+        BEAM_LOST: (Reason.SLID, BEAM_SLID.format(far)),
+        BEAM_THROWN: (Reason.THROWN, f"the beam was thrown {far:.3g} m off the columns"),
+        PARTED: (Reason.PARTED, f"the columns' rotations differ by {far:.3g} of alpha"),
     }
     return Problem(*words[int(problem)])
 

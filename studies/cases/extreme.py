@@ -11,7 +11,7 @@ from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome
 from engines.declaration import UNTUNED
-from studies.cases.paper import free_rocking_window
+from engines.scene import free_rocking_window
 from studies.sources.registry import resolve
 
 SPRINGS: Mapping[str, Callable[[float, float], Mapping[str, float]]] = {

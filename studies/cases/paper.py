@@ -10,8 +10,7 @@ import numpy as np
 
 from analytic import peak_ratios
 from analytic.block import RigidBlock
-from analytic.motion import Motion, SinePulse
-from engines.scene import System
+from analytic.motion import SinePulse
 
 PULSES = {"half-sine": 1, "full-sine": 2}
 """Half cycles of each pulse."""
@@ -142,8 +141,3 @@ def chosen_cases(quick: bool) -> dict[str, list[Case]]:
             chosen["typical"].append(known[int(np.argmin(np.abs(survivors - 0.3)))])
             chosen["near overturning"].append(known[int(np.argmax(survivors))])
     return chosen
-
-
-def free_rocking_window(block: System, motion: Motion) -> float:
-    """Return the time [s] of an observation: the motion and 8/p of free rocking, a few impacts."""
-    return motion.duration + 8.0 / block.p

@@ -25,7 +25,7 @@ class Question:
     system: System
     motion: Motion
     start: tuple[float, float] = (0.0, 0.0)  # rotation [rad] and its rate [rad/s] at time zero
-    duration: float | None = None  # [s]; by default until the peak is decided
+    duration: float | None = None  # [s]; None: as `respond` does
     times: FloatArray | None = None  # of the history [s]
 
 

@@ -15,9 +15,9 @@ from analytic.motion import Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.slide import SlidingBlock
 from analytic.start import LEAST_TILT, strongest
-from engines.scene import System
+from engines.scene import System, free_rocking_window
 from studies.cases.accelerograms import Baseline, read_record
-from studies.cases.paper import PULSES, free_rocking_window
+from studies.cases.paper import PULSES
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import (
     Count,

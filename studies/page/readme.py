@@ -12,8 +12,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
+from engines.scene import free_rocking_window
 from engines.troubles import TROUBLES
-from studies.cases.paper import free_rocking_window
 from studies.cases.refusal import BadInputError
 from studies.kit.jobs import Job, Question, ask
 from studies.kit.say import capital, duration, part

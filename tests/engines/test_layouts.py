@@ -1,10 +1,11 @@
 """Scenes of other things than one block: a frame, a slide."""
 
+import math
 import re
 
 import pytest
 from given import FULL_SINE as SINE
-from known import Bare
+from known import Bare, standing
 from uses import HERE, agreed, rocked, scene
 
 from analytic import RockingFrame, SinePulse, SlidingBlock, Still
@@ -53,7 +54,8 @@ widths of a column."""
     [row for row in LANDED if row[0] in HERE],
 )
 def test_a_frame_lands_as_a_block(engine, motion, system, within, whole, goes):
-    exact, response = agreed(engine, motion, system=system)
+    watched = motion.duration + 2.0 / system.p  # beyond the peak, and short of a rest
+    exact, response = agreed(engine, motion, system=system, duration=watched)
     assert response.message == ""
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=within)
     seen, ratios = response.observables, [impact.ratio for impact in response.impacts]
@@ -125,6 +127,52 @@ def test_a_launched_box_stops_and_counts_as_far_as_it_got(engine):
     assert (*found.slips, *found.history.theta) == pytest.approx(
         (*exact.slips, *exact.history.theta), abs=1e-3
     )
+
+
+class Swings(Bare):
+    """Two columns that turn by 0.2 of alpha at first, later by 0.4, the second further by a part.
+
+    The beam slides by a way [m], and is raised by another, as they turn by 0.4.
+    """
+
+    moment = Moment.END
+
+    def __init__(self, posed, further, slid_m, raised_m):
+        self.posed, self.time, self.off = posed, 0.0, (further, slid_m, raised_m)
+
+    def step(self, step):
+        self.time = step.end_s
+
+    def state(self):
+        system, (*columns, beam) = self.posed.system, self.posed.bodies
+        phase, (further, slid_m, raised_m) = system.p * self.time, self.off
+        theta = (0.2 if phase < math.pi else 0.4) * system.alpha * math.sin(phase) ** 2
+        rate = 2.0 * system.p * theta / math.tan(phase or 1.0)
+        more, poses = (theta / (0.4 * system.alpha)), []
+        for column, part in zip(columns, (1.0, 1.0 + further), strict=True):
+            pose = standing(self.posed, part * theta, part * rate)
+            poses.append(pose._replace(x=column.home[0] + pose.x))
+        x, z = beam.home[0] + 2.0 * (poses[0].x - columns[0].home[0]), 2.0 * poses[0].z
+        z += beam.home[1] - 2.0 * columns[0].home[1]
+        return [*poses, Pose(x + more * slid_m, z + more * raised_m, 0.0, 0.0)]
+
+
+@pytest.mark.parametrize(
+    ("off", "reason"),
+    [
+        ((0.0, 0.0, 0.0), None),
+        ((0.3, 0.0, 0.0), Reason.PARTED),
+        ((0.0, 0.06, 0.0), Reason.SLID),
+        ((0.0, 0.0, 0.6), Reason.THROWN),
+    ],
+)
+def test_a_frame_is_followed_beyond_its_first_turn_and_as_long_as_it_is_one(off, reason):
+    posed = scene(SinePulse.in_g(0.5, omega=20.0, half_cycles=2), system=frame(2.0))
+    found = simulate_world(Swings(posed, *off), posed, 1e-3, Stepping.FIXED)
+    assert found.reason is reason
+    if reason is None:
+        assert found.peak_ratio == pytest.approx(0.4, rel=1e-6)
+        assert found.steps == math.ceil(posed.watched / 1e-3)
 
 
 class Trembles(Bare):

@@ -11,7 +11,9 @@ from given import BLOCK, PULSE
 from analytic import RockingFrame, SinePulse, SlidingBlock, Still, simulate
 from studies import respond, side_by_side
 from studies.__main__ import run
+from studies.kit.jobs import Job, Question, summary
 from studies.measures.halving import published_trust
+from studies.scenes import measure
 
 FIELDS = [
     *("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
@@ -155,6 +157,25 @@ def test_a_frame_is_compared(capsys):
     assert max(found["peak_1"], found["peak_2"]) == found["peak_ratio"]
     assert found["parting"] < 1e-6 and {"tilt", "drift_m"} <= {*found}
     assert found["kappa"] == exact["kappa"] > 0.0
+
+
+@pytest.mark.slow
+def test_a_frame_is_followed_as_long_by_every_command():
+    """DART's and Box2D's columns part by 0.7 and 0.5 of alpha after the first turn."""
+    frame = RockingFrame(width=0.5, height=1.5, columns=3, load=2.0)
+    pulse = SinePulse.in_g(0.5, omega=9.0, half_cycles=2)
+    sources = ["exact", "dart:tuned", "box2d:tuned"]
+    case = Question(system=frame, motion=pulse)
+    asked = [Job(labels={"scene": "frame"}, case=case, source=name) for name in sources]
+    compared = side_by_side(frame, pulse, sources).set_index("source")
+    for job in asked:
+        row, alone = measure(job), summary(respond(job.source, frame, pulse))
+        others = alone, compared.loc[job.source]
+        for name in ("outcome", "message"):
+            assert row[name] == others[0][name] == others[1][name]
+        peaks = [other["peak_ratio"] for other in others]
+        assert peaks == pytest.approx([row["peak_ratio"]] * 2, rel=1e-12, nan_ok=True)
+    assert row["reason"] == "PARTED"
 
 
 def test_a_floor_that_lags_has_a_column_of_its_own(capsys):

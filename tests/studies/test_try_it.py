@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from analytic import RigidBlock, SinePulse, simulate
+from engines.scene import free_rocking_window
 from studies import respond
 from studies.__main__ import run
-from studies.cases.paper import free_rocking_window
 from studies.page import page
 
 quickjs = pytest.importorskip("quickjs")  # it has no wheel for Python 3.13
