@@ -23,7 +23,6 @@ from analytic.record import Record
 from analytic.response import Outcome
 from analytic.simulate import simulate
 from analytic.start import strongest
-from engines.scene import free_rocking_window
 from studies.blocks.cabinets import Cabinet, read_cabinets
 from studies.cases.accelerograms import Baseline, baseline_note, read_record
 from studies.kit import arguments
