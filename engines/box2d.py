@@ -24,7 +24,7 @@ from engines.declaration import (
     level,
     moving_base,
 )
-from engines.parts import FLOOR_HEIGHTS, NO_JAM, Counted, fall, imported, iterations_for, returned
+from engines.parts import NO_JAM, Counted, fall, floor_reach, imported, iterations_for, returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
@@ -88,7 +88,7 @@ class Box2DWorld:
         self.world = self._box2d.b2World(gravity=(0.0, 0.0))
         self.world.continuousPhysics = s.continuous
         self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
-        self.floors = self._new_floors(FLOOR_HEIGHTS * scene.bodies[0].height * self._unit)
+        self.floors = self._new_floors(floor_reach(scene) * self._unit)
         first = scene.bodies[0]
         self._half = 0.5 * first.width * self._unit, 0.5 * first.height * self._unit
         self._state = np.zeros((len(self.bodies), len(Pose._fields)))

@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
+import numpy as np
+
 from engines.scene import LOWER, Body, Scene
 from engines.world import ContactPhase, Step
 
@@ -23,7 +25,7 @@ MOST_ITERATIONS = 2**31 - 1
 """What fits into a library's own integer."""
 
 FLOOR_HEIGHTS = 100.0
-"""Half of the extent of a base that is a box, in heights of the block and in its depths."""
+"""Half of the extent of a base that is a box, in heights of the block and its depths, at least."""
 
 
 def fall(scene: Scene, dt_s: float) -> float:
@@ -72,10 +74,24 @@ def hull_points(body: Body) -> list[Point]:
     return list(itertools.product((-x, x), (-y, y), (-z, z)))
 
 
+def floor_reach(scene: Scene) -> float:
+    """Return half of the length [m] of a base; a block that slides stays on it.
+
+    At most it is as fast as it began, and as the base's velocity ever differs from another: it goes
+    no further in the motion, and after it as friction lets it. What is thrown may go twice as far.
+    """
+    far = FLOOR_HEIGHTS * scene.bodies[0].height
+    if scene.layout.rocking or not scene.friction:
+        return far
+    (place, velocity), end = scene.start, scene.motion.duration
+    speed = abs(velocity) + float(np.ptp(scene.motion.velocity(np.linspace(0.0, end, 1000))))
+    slide = speed * (end + 0.5 * speed / (scene.friction * scene.system.gravity))
+    return max(far, 2.0 * (abs(place) + slide))
+
+
 def floor_half_size(scene: Scene) -> Point:
     """Return half of the size [m] of a base that is a box; its top is at its own half height."""
-    height, depth = scene.bodies[0].height, scene.bodies[0].depth
-    return (FLOOR_HEIGHTS * height, FLOOR_HEIGHTS * depth, height)
+    return floor_reach(scene), FLOOR_HEIGHTS * scene.bodies[0].depth, scene.bodies[0].height
 
 
 class Counted:

@@ -23,7 +23,7 @@ from engines.declaration import (
     level,
     moving_base,
 )
-from engines.parts import FLOOR_HEIGHTS, NO_JAM, fall, imported, iterations_for, returned
+from engines.parts import NO_JAM, fall, floor_reach, imported, iterations_for, returned
 from engines.run.export import Notes, Script, constant, scaled
 from engines.scene import BASE, Body, Scene
 from engines.settings import check, disagreement, setting
@@ -114,14 +114,14 @@ class PymunkWorld:
         return made
 
     def _boxes(self, scene: Scene) -> tuple[list[Any], list[Any]]:
-        far = FLOOR_HEIGHTS * scene.bodies[0].height * self._unit
+        far = floor_reach(scene) * self._unit
         pairs = zip(self.bodies, scene.bodies, strict=True)
         boxes = [self._pymunk.Poly(made, boxed(body, self._unit)) for made, body in pairs]
         return boxes, [self._pymunk.Segment(self.base, (-far, 0.0), (far, 0.0), 0.0)]
 
     def _corners(self, scene: Scene) -> tuple[list[Any], list[Any]]:
         """Make the corners, and a floor for each, which meets that corner alone."""
-        far = FLOOR_HEIGHTS * scene.bodies[0].height * self._unit
+        far = floor_reach(scene) * self._unit
         deeper = self.margin if self._together else 0.0
         corners: list[Any] = []
         floors: list[Any] = []

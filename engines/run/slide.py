@@ -21,8 +21,8 @@ where it is, after this many times as long."""
 
 LEAST_LIFT = 1e-4
 """A box is thrown off, and slides flat no longer, when it rises by more than this part of its width
-and than its contact gives way. It rises from the base, or from a skin by which a contact holds it
-above: the lowest place after the time in which a tremor ends, or the last place before."""
+and than its contact gives way, or holds it above the base by a skin. It rises from there or from
+the base: from the lowest place after the time in which a tremor ends, or the last one before."""
 
 STOP, DISTANCE, SINCE = range(3)
 """Columns of slips: the end [s], the distance with its sign [m], the beginning [s]."""
@@ -149,7 +149,7 @@ def slide_response(slide: Slide, slips: FloatArray, history: History | None) -> 
     slide.way = 0.0
     seen = slips[: slide.slips]
     slid = Outcome.SLID if slide.slips else Outcome.AT_REST
-    lift, flat = slide.lift - max(slide.level, 0.0), max(-slide.level, LEAST_LIFT * slide.width)
+    lift, flat = slide.lift - max(slide.level, 0.0), max(abs(slide.level), LEAST_LIFT * slide.width)
     thrown = f"thrown off: it rose {lift:.3g} m, and slides flat up to {flat:.3g} m"
     return Response(
         outcome=Outcome.OVERTURNED if slide.overturned else slid,
