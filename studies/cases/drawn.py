@@ -1,4 +1,4 @@
-"""Random blocks or frames and pulses, and which of them the reference is sure of."""
+"""Random blocks, frames or slides and pulses, and which of them the reference is sure of."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from analytic import RockingFrame, frame_demands, simulate
+from analytic import RockingFrame, SlidingBlock, conditioning, frame_demands, simulate
 from analytic.block import RigidBlock, Rocker
 from analytic.motion import SinePulse
 from engines.scene import BEAM_DEPTH, SPACING
@@ -20,6 +20,11 @@ LEAST_NORMAL = 0.2
 block that overturns until it passes the critical rotation for good."""
 FRICTION = 1.0
 """What a frame's contacts may need: those of squat columns need more than engines may have."""
+
+CALM = 10.0
+"""Condition number up to which a frame is calm."""
+SLIPS = 1e-3, 10.0
+"""Least slip and longest way, over B, of a slide: shorter is not told from a tremor."""
 
 Drawn = Literal["block", "frame"]
 """Scenes of which random cases are drawn."""
@@ -73,6 +78,36 @@ def draw(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
     kept = filter(_is_sure, _everything(seed, scene))
     for case, drawn in enumerate(kept):
         yield replace(drawn, case=case)
+
+
+def calm_frames(seed: int) -> Iterator[RandomFrame]:
+    """Yield those of `draw`, without end, that survive, of 2 to 4 columns, loads 0.2 to 6, κ < 10.
+
+    κ is by the amplitude, or by the velocity ratio of impacts where that is larger.
+    """
+    for drawn in _everything(seed, "frame"):
+        if isinstance(drawn, RandomFrame) and drawn.columns <= 4 and 0.2 <= drawn.load <= 6.0:
+            kappas = conditioning(drawn.block, drawn.motion)  # nan where it does not survive
+            if max(map(abs, kappas)) < CALM and _is_sure(drawn):
+                yield drawn
+
+
+def slides(seed: int) -> Iterator[tuple[SlidingBlock, SinePulse]]:
+    """Yield blocks that slide and their pulses without end, the same ones for the same seed.
+
+    H/B is from 0.25 to 1, the friction from 0.05 to 0.6, the amplitude from 1.2 to 5 times that;
+    sizes, half cycles and omega/p are as of blocks. Kept are slips that can be seen.
+    """
+    generator = np.random.default_rng(seed)
+    while True:
+        width, frequency = np.exp(generator.uniform(np.log([0.02, 0.3]), np.log([10.0, 12.0])))
+        aspect, friction, onsets = generator.uniform([0.25, 0.05, 1.2], [1.0, 0.6, 5.0]).tolist()
+        box = SlidingBlock(width=float(width), height=aspect * float(width), friction=friction)
+        omega, half_cycles = float(frequency) * box.p, int(generator.integers(1, 5))
+        pulse = SinePulse.in_g(onsets * friction, omega=omega, half_cycles=half_cycles)
+        slips = [abs(slip) / box.width for slip in simulate(box, pulse).slips]
+        if slips and SLIPS[0] < min(slips) and sum(slips) < SLIPS[1]:
+            yield box, pulse
 
 
 def _everything(seed: int, scene: Drawn) -> Iterator[RandomCase]:

@@ -68,8 +68,8 @@ def _outcomes(lines: pd.DataFrame, preset: str) -> list[str]:
 
 
 def in_scene(published: Path, name: str) -> Table:
-    """Return the summary of a scene's engines, its numbers in words."""
-    lines = table_in(published / "scenes", f"{name}-summary")
+    """Return a summary of a scene's engines, its numbers in words."""
+    lines = table_in(published / "scenes", name)
     rows = [
         [_cell(str(head), it) for head, it in line.items()] for line in lines.to_dict("records")
     ]
@@ -81,7 +81,9 @@ def _cell(head: str, value: Any) -> str:
         return f"`{value}`" if head == "source" else str(value)
     if math.isnan(value):
         return "–"
-    return part(value) if head.endswith(("error", "rest", "carried")) else f"{value:.3g}"
+    return (
+        part(value) if head.endswith(("error", "difference", "rest", "carried")) else f"{value:.3g}"
+    )
 
 
 def advised(published: Path) -> list[list[str]]:

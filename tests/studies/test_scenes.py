@@ -1,13 +1,16 @@
 """Frames, slides and floors: what is asked, how far off an answer is, and the line of a source."""
 
 import math
+from itertools import islice
 
+import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import simulate
+from analytic import conditioning, simulate
 from analytic.response import Outcome, Reason, Response
 from studies import scenes
+from studies.cases.drawn import calm_frames, slides
 from studies.kit.jobs import unanswered
 from studies.kit.run import run
 from studies.scenes import finding, jobs, measure, tabulate
@@ -52,18 +55,38 @@ def test_a_block_that_is_held_is_no_wrong_slide_and_what_is_not_built_counts_now
 def test_the_finding_takes_the_worst_engine_of_the_best_presets():
     frames = pd.DataFrame({
         "source": ["exact", "mujoco:default", "mujoco:landing", "box2d:default"],
-        "largest_error": [0.0, 0.5, 1e-5, 0.2], "wrong": [0, 3, 0, 1],
+        "max_error": [0.0, 0.5, 1e-5, 0.2], "wrong": [0, 3, 0, 1],
     })  # fmt: skip
-    words = finding({"frame-summary": frames, "slide-summary": pd.DataFrame()})
+    words = finding({"random-frame-summary": frames, "slide-summary": pd.DataFrame()})
     assert "20 %" in words and "1 outcomes" in words and "50 %" not in words
     slides = pd.DataFrame({
-        "source": ["exact", "drake:default"], "largest_slip_error_m": 0.0, "wrong": [0, 1],
+        "source": ["exact", "drake:default"], "max_error": 0.0, "wrong": [0, 1],
         "thrown_off": [0, 1],
     })  # fmt: skip
-    words = finding({"frame-summary": pd.DataFrame(), "slide-summary": slides})
+    words = finding({"random-slide-summary": slides, "slide-summary": pd.DataFrame()})
     assert "1 outcomes" in words and "drake:default" in words
-    words = finding({"frame-summary": pd.DataFrame(), "slide-summary": slides[:1]})
-    assert "No engine" in words
+    assert "No engine" in finding({"slide-summary": slides[:1]})
+
+
+def test_random_frames_are_summed_up_beside_the_critical_rotation():
+    near = {**FRAME_ROW, "scene": "random-frame", "half_cycles": 2}
+    rows = [{**near, "error": error} for error in (1e-3, -1e-3, 2e-3, -0.5)]
+    lost = {"error": math.nan, "outcome": "failed", "right": False, "reason": "PARTED"}
+    (line,) = of([*rows, {**near, **lost}], "random-frame-summary")
+    assert (line["frames"], line["wrong"], line["parted"]) == (5, 1, 1)
+    assert (line["median_error"], line["max_error"]) == pytest.approx((1.5e-3, 0.5))
+    assert line["p90_difference"] == pytest.approx(0.2 * np.quantile([1e-3, 1e-3, 2e-3, 0.5], 0.9))
+
+
+def test_random_cases_are_calm_or_slide_as_far_as_can_be_seen():
+    for frame in islice(calm_frames(3), 4):
+        assert frame.columns <= 4 and 0.2 <= frame.load <= 6.0
+        assert 0.0 < max(map(abs, conditioning(frame.block, frame.motion))) < 10.0
+    drawn = [*islice(slides(3), 20)]
+    assert drawn == [*islice(slides(3), 20)]
+    for box, pulse in drawn:
+        ways = [abs(slip) / box.width for slip in simulate(box, pulse).slips]
+        assert min(ways) > 1e-3 and sum(ways) < 10.0
 
 
 def test_equal_steps_are_shifted_by_parts_of_a_step():
