@@ -1,4 +1,7 @@
-"""Rows to reproduce to the bit: `golden.py` prints what differs, `golden.py write` makes them."""
+"""Rows to reproduce to the bit: `golden.py` prints what differs, `golden.py write` makes them.
+
+`golden.py NAME ...` compares those of some engines, or of the "models" and solvers, alone.
+"""
 
 import hashlib
 import sys
@@ -47,9 +50,18 @@ def cases():
     yield "friction 0.8", block, Delayed(full, 0.2), {"friction": 0.8}
 
 
-def rows():
+def sources(*names):
+    """Return the sources of some engines, or of the "models"; of all that are here by default."""
+    return [
+        source
+        for name in names or ("models", *HERE)
+        for source in (OTHERS if name == "models" else [f"{name}:{use}" for use in PRESETS])
+    ]
+
+
+def rows(*names):
     """Yield a row for each case and each source that is installed and takes the case."""
-    for source in (*OTHERS, *(f"{name}:{preset}" for name in HERE for preset in PRESETS)):
+    for source in sources(*names):
         for name, system, motion, options in cases():
             if source.startswith("dart") and isinstance(system, RockingFrame):
                 continue  # they depend on where in memory its bodies are
@@ -63,17 +75,18 @@ def rows():
             yield source, name, it.outcome.value, repr(float(it.peak_ratio)), it.steps, events
 
 
-def compared():
+def compared(*names):
     """Return each kept row of what is installed beside the same row of today."""
     kept = pd.read_csv(TABLE, dtype=str, keep_default_na=False).set_index(COLUMNS[:2])
-    today = pd.DataFrame(rows(), columns=COLUMNS).astype(str).set_index(COLUMNS[:2])
-    kept = kept[[source.partition(":")[0] in (*OTHERS, *HERE) for source, _ in kept.index]]
+    today = pd.DataFrame(rows(*names), columns=COLUMNS).astype(str).set_index(COLUMNS[:2])
+    asked = {source.partition(":")[0] for source in sources(*names)}
+    kept = kept[[source.partition(":")[0] in asked for source, _ in kept.index]]
     return pd.concat({"kept": kept, "today": today}, axis=1).fillna("no row")
 
 
 if __name__ == "__main__" and sys.argv[1:] == ["write"]:
     pd.DataFrame(rows(), columns=COLUMNS).to_csv(TABLE, index=False)
 elif __name__ == "__main__":
-    both = compared()
+    both = compared(*sys.argv[1:])
     apart = (both["kept"] != both["today"]).any(axis=1)
     print(both[apart].to_string(), f"{(~apart).sum()} of {len(both)} rows are equal", sep="\n")
