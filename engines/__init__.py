@@ -12,6 +12,10 @@ declare it in a package of your own under the entry point group ``rocking.engine
     [project.entry-points."rocking.engines"]
     mine = "my_package.rocking:ENGINE"
 
+A file that no package announces is scored as it is, `rocking score my_file:ENGINE`, and known to
+every command, ``--sources exact mine:tuned``, where ``ROCKING_ENGINES="mine=my_file:ENGINE"`` is
+set in the environment; mine is the name that the declaration has.
+
 It holds
 
 - a frozen settings class, whose defaults are the library's own (`engines.settings`); one setting is
@@ -32,7 +36,9 @@ It holds
 - where it can hold several bodies, and bodies that rest on others, ``stacks``;
 - ``ENGINE``, an `engines.declaration.Engine`: what it can do, its presets from "default" (as the
   library's own documentation shows it, each setting with its source) to the best there is, and
-  what the studies try of its contact.
+  what the studies try of its contact. Where its world moves no base, ``frames=("base",)`` says so:
+  a `Step` then carries the motion as gravity along the base. A preset "landing" needs no more than
+  ``stepping=Stepping.LANDING``, for which steps are chosen outside the engine.
 
 The conformance tests run over the registry and take their tolerances from the declaration.
 """

@@ -290,7 +290,9 @@ class Engine:
         ValueError if there is no such preset, or a setting of the scene is not the engine's.
         """
         presets = self.presets[::-1] if scene.preset is None else (self.preset(scene.preset),)
-        preset = next((each for each in presets if not self._lacks(scene, each)), presets[0])
+        lacking = [self._lacks(scene, each) for each in presets]
+        best = lacking.index("") if "" in lacking else 0
+        preset = presets[best]
         names = [item.name for item in fields(preset.settings)]
         for name in scene.settings:
             one_of("setting", name, names)
@@ -308,16 +310,18 @@ class Engine:
             scene if scene.frame else replace(scene, frame=preset.frame),
             replace(preset.settings, **{**(other or {}), **scene.settings, **given}),
             dt_s,
-            self._lacks(scene, preset),
+            lacking[best],
         )
 
     def _lacks(self, scene: Scene, preset: Preset) -> str:
         """Say what of a scene it cannot do with a preset, or return an empty string."""
-        if scene.stacked and not self.stacks:
+        layout = scene.layout
+        stacked = len(layout.bodies) > 1
+        if stacked and not self.stacks:
             return f"{self.title} is not built here for {STACKED}"
-        if preset.stepping is Stepping.LANDING and not scene.layout.rocking:
+        if preset.stepping is Stepping.LANDING and not layout.rocking:
             return f"nothing rocks here on whose impacts {self.name}:{preset.name} could land"
-        if scene.stacked and preset.stacked is None:
+        if stacked and preset.stacked is None:
             return f"{self.name}:{preset.name} is not built here for {STACKED}"
         if (frame := scene.frame or preset.frame) not in self.frames:
             return f"{self.title} has no frame {frame!r}"

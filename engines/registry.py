@@ -62,7 +62,11 @@ def _places() -> dict[str, EntryPoint]:
 
 
 def _further() -> list[EntryPoint]:
-    pairs = (word.partition("=") for word in os.environ.get(FURTHER, "").split())
+    words = os.environ.get(FURTHER, "").split()
+    for word in words:
+        if not re.fullmatch(r"[\w.-]+=[\w.]+:[\w.]+", word):
+            raise UnloadableError(f"{FURTHER} holds {word!r}; it must be like mine=my_file:ENGINE")
+    pairs = (word.partition("=") for word in words)
     return [EntryPoint(name, place, GROUP) for name, _, place in pairs]
 
 
@@ -77,7 +81,10 @@ def named(place: str) -> str:
     module = place.partition(":")[0]
     found = _found(place, EntryPoint(module, place, GROUP))
     if isinstance(found, Engine):
-        return found.name
+        if re.fullmatch(r"[\w.-]+", found.name):
+            return found.name
+        words = "a name is made of letters, digits, '-', '_' and '.'"
+        raise ValueError(f"engine {place!r} is called {found.name!r}; {words}")
     if not callable(found) or inspect.isbuiltin(found):
         raise ValueError(f"engine {place!r} is neither a declaration nor what builds a world")
     try:
@@ -132,7 +139,9 @@ def loaded(name: str) -> Engine:
     if callable(found) and place in _further():
         return undeclared(name, found, place.module.partition(".")[0])
     if not isinstance(found, Engine) or found.name != name:
-        raise UnloadableError(f"engine {name!r}: {place.value} is no declaration of that name")
+        own = f", but of {found.name!r}" if isinstance(found, Engine) else ""
+        words = f"{place.value} is no declaration of that name{own}"
+        raise UnloadableError(f"engine {name!r}: {words}")
     return found
 
 

@@ -152,8 +152,9 @@ def figures(tables: Tables) -> Figures:
     from studies.drawing.stability import draw_matrix
 
     along = precision.work_precision(tables[STEPS])
+    answered = (along["wall_s"] > 0.0).any()
     return {
-        "score": draw_precision(along),
+        **({"score": draw_precision(along)} if answered else {}),
         "extremes": draw_matrix(tables[EXTREMES], "Extreme cases"),
     }
 

@@ -15,8 +15,8 @@ from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
+from engines.registry import FURTHER, find, named
 from engines.registry import announce as announce_engine
-from engines.registry import find, named
 from engines.scene import Scene, System
 from engines.settings import one_of, perhaps
 from studies.sources.scipy_peers import solve_ivp_response
@@ -160,7 +160,8 @@ def resolve(name: str) -> Source:
     source = SOURCES.get(plain)
     if source is None:
         near = perhaps(plain, list(SOURCES))
-        raise UnknownSourceError(f"source is {name!r}{near}; it must be one of {allowed()}")
+        own = f"; your own: {FURTHER}='mine={name}'" if colon and not near else ""
+        raise UnknownSourceError(f"source is {name!r}{near}; it must be one of {allowed()}{own}")
     if colon and preset not in presets_of(source):
         able = [f"{plain}:{own}" for own in presets_of(source)]
         words = f"one of {', '.join(able)}" if able else f"{plain!r}, for only engines have presets"

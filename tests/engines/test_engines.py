@@ -129,7 +129,7 @@ CLOSE = {
     "crossed and not overturned": (BLOCK, pulse(3.5, 3.0, 2), {}, 1e-2),
     # it loses its speed by Housner's ratio at each impact; the time of rest is the sum of a
     # geometric series whose ratio carries the error of the step
-    "impacts and rest": (SQUAT, pulse(1.5, 3.0, 1, SQUAT), {"duration": 6.0}, 1e-2),
+    "impacts and rest": (SQUAT, pulse(1.5, 3.0, 1, SQUAT), {"duration": 2.0}, 1e-2),
 }
 """Block, motion, what else is asked, and by how much a peak at a fixed step may be missed."""
 

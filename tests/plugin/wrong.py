@@ -1,7 +1,9 @@
 """Engines with a fault of their own in each class, most of them the engine of one file."""
 
+from dataclasses import replace
+
 from my_engine import World
-from rocking_moreau import MoreauSettings, MoreauWorld
+from rocking_moreau import ENGINE, MoreauSettings, MoreauWorld
 
 from engines.registry import PlainSettings
 from engines.world import Moment
@@ -39,3 +41,11 @@ class Moreau(MoreauWorld):
 Middle, End = (
     type("Staggered", (World,), {"moment": each}) for each in (Moment.MIDDLE, Moment.END)
 )
+
+
+class Silent(World):
+    def step(self, step):
+        raise RuntimeError("there is no answer")
+
+
+SPACED = replace(ENGINE, name="my engine")

@@ -106,7 +106,7 @@ def test_a_worker_of_other_code_is_refused(station, monkeypatch):
 
 def test_an_address_where_nobody_answers_is_refused_and_so_are_jobs_beside_it(tmp_path, capsys):
     for address in ("tcp://127.0.0.1:9", "nowhere", "::::"):
-        asked = ["sweep", "--cluster", address, "--out", tmp_path]
+        asked = ["sweep", "--sources", "exact", "--cluster", address, "--out", tmp_path]
         refused(capsys, asked, f"--cluster is {address!r}", "running Dask scheduler")
     refused(capsys, [*asked, "--jobs", "2"], "--jobs is 2", "without --cluster")
 

@@ -45,17 +45,26 @@ def test_what_harms_while_it_is_loaded_is_refused_in_a_line(module, announced, m
     assert not Path("out").exists()
 
 
-@pytest.mark.parametrize("source", ["import sys; sys.exit()", "World = 7"])
-def test_an_engine_that_was_announced_and_cannot_be_loaded_is_a_line(source, tmp_path):
+@pytest.mark.parametrize(
+    ("source", "known", "words"),
+    [
+        ("import sys; sys.exit()", "mine=mine:World", "engine 'mine'"),
+        ("World = 7", "mine=mine:World", "engine 'mine'"),
+        ("", "mine:World", "ROCKING_ENGINES holds 'mine:World'; it must be like"),
+    ],
+)
+def test_an_engine_that_was_announced_and_cannot_be_loaded_is_a_line(
+    source, known, words, tmp_path
+):
     (tmp_path / "mine.py").write_text(source)
     done = python(
         *("-m", "studies", "compare", *CASE, "--sources", "exact"),
         path=[tmp_path],
-        env={FURTHER: "mine=mine:World"},
+        env={FURTHER: known},
     )
     assert (done.returncode, done.stdout) == (2, "")
     (line,) = done.stderr.splitlines()
-    assert line.startswith("rocking: engine 'mine'")
+    assert line.startswith(f"rocking: {words}")
 
 
 def test_an_engine_is_loaded_here_after_another_process_has_loaded_it(announced, monkeypatch):

@@ -51,6 +51,7 @@ compare CASE --sources mujoco:tunde | 'mujoco:tunde', perhaps 'mujoco:tuned'; it
 compare CASE --sources mujoco:fixed | 'mujoco:fixed', now 'mujoco:tuned'
 compare CASE --sources engines:naive | now 'pybullet:default'
 export CASE --out DIR --engine pybullet:naive | its preset must have equal steps: default
+compare CASE --sources my_engine:World | ROCKING_ENGINES='mine=my_engine:World'
 compare CASE --sources mujuco | 'mujuco', perhaps 'mujoco'; it must be one of exact
 compare CASE --sources MuJoCo:tuned | 'MuJoCo:tuned', perhaps 'mujoco'
 compare CASE --sources hausner:tuned | source is 'hausner:tuned', perhaps 'housner'

@@ -33,6 +33,7 @@ MINE = "my_engine:World"
         (":World", "it must be like my_package.mine:ENGINE"),
         ("my engine:World", "it must be like my_package.mine:ENGINE"),
         ("rocking_moreau:ENGINE", "is called 'moreau', as another is"),
+        ("wrong:SPACED", "is called 'my engine'; a name is made of letters"),
         ("rocking_moreau:SLACK", "is neither a declaration nor what builds a world"),
         ("wrong:Turned", "ENGINE is 'wrong:Turned': put to theta 0.0804 and rate"),
     ],
@@ -61,6 +62,13 @@ def test_each_table_has_its_rows_with_its_own_columns(few):
     assert tables[SWEEP]["figure"].dtype == int and "method" not in tables[SWEEP]
     assert tables["score-steps"]["runs"].min() >= 1
     assert abs(tables["score-frame"]["error"].item()) < 1e-2
+
+
+def test_an_engine_that_never_answers_has_rows_that_say_why(alone, few, tmp_path, capsys):
+    pytest.importorskip("pymunk")
+    assert run(["score", "wrong:Silent", "--quick", "--out", str(tmp_path / "out")]) == 1
+    assert "there is no answer" in capsys.readouterr().err
+    assert [path.name for path in (tmp_path / "out").glob("*.png")] == ["extremes.png"]
 
 
 @pytest.mark.slow
