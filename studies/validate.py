@@ -186,12 +186,9 @@ def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
 
 
 def figures(tables: Tables) -> Figures:
-    """Draw the errors in bands of the sensitivity, or the errors over their estimates."""
-    from studies.drawing.validate import draw_conditioning, draw_estimates
+    """Draw the errors in bands of the sensitivity; there is no figure of factors."""
+    from studies.drawing.validate import draw_conditioning
 
-    if "factors" in tables:
-        lines = tables["estimates"]
-        return {"estimate": draw_estimates(lines[lines["set"] == CALIBRATE])}
     return {"validate": draw_conditioning(tables["errors"])} if "errors" in tables else {}
 
 
@@ -215,8 +212,6 @@ according to the engine itself at half the step. Each needs a folder of its own.
     captions={
         "validate": "Errors of random cases in bands of S, how far small errors of the pulse or of "
         "the impacts move a peak: for each engine the middle half, the median, and the ends.",
-        "estimate": "Part of the cases whose true error is within so many times the engine's own "
-        "estimate of it, the difference from half the step; a line for each engine, by preset.",
     },
 )
 command = STUDY.command()

@@ -1,9 +1,8 @@
-"""Moving pictures of what stands on a base: the bodies above, how they move below."""
+"""Moving pictures of what stands on a base."""
 
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -17,7 +16,7 @@ from analytic.motion import FloatArray, Motion
 from analytic.response import Outcome
 from engines.scene import System, layout_of
 from studies.drawing.block import outlines
-from studies.drawing.styles import line_of, style_of
+from studies.drawing.styles import style_of
 from studies.kit.jobs import Row
 from studies.kit.pictures import lay_out
 from studies.kit.tables import draft
@@ -52,34 +51,33 @@ def write_film(
 
 
 class Stage:
-    """A figure that can show any time of the responses: a panel for each, the clock below."""
+    """A figure that can show any time of the responses: a panel for each, and the clock."""
 
     def __init__(
         self, system: System, motion: Motion, times: FloatArray, rows: Sequence[Row]
     ) -> None:
         self._times, self._shift = times, motion.displacement(times)
-        self.figure = Figure(figsize=(2.1 * max(len(rows), 3), 5.2), layout="constrained")
-        upper, lower = self.figure.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1))[:, 0]
+        self.figure = Figure(figsize=(2.1 * max(len(rows), 3), 2.9), layout="constrained")
         most = 0.0 if turns(system) else max(float(np.abs(row["theta"]).max()) for row in rows)
         right, high = outlines(system, 0.0).max(axis=(0, 1))
         spare = 1.15 * math.hypot(system.width, system.height)
         reach = float(right) - 0.5 * system.width + spare + most
         top = float(high) - system.height + 1.2 * spare
         look = {"xlim": (-reach, reach), "ylim": (-0.25 * reach, top), "aspect": "equal"}
-        grid = upper.subplots(1, len(rows), sharey=True, squeeze=False, subplot_kw=look)[0]
+        grid = self.figure.subplots(1, len(rows), sharey=True, squeeze=False, subplot_kw=look)[0]
         exact = next((row["theta"] for row in rows if row["source"] == "exact"), None)
         self._panels = [
             Panel(axes, system, row, None if row["source"] == "exact" else exact)
             for axes, row in zip(grid, rows, strict=True)
         ]
-        self._clock = _graph(lower.subplots(), system, motion, times, rows)
+        self._clock = self.figure.supxlabel("time", fontsize=9)
         lay_out(self.figure)
 
     def show(self, frame: int) -> None:
         """Set the figure to a frame."""
         for panel in self._panels:
             panel.show(frame, float(self._shift[frame]))
-        self._clock.set_xdata([self._times[frame]] * 2)
+        self._clock.set_text(f"{self._times[frame]:.2f} s")
 
 
 class Panel:
@@ -110,28 +108,6 @@ class Panel:
             bodies.set_verts(outlines(self._system, float(theta[frame])) + np.array([shift, 0.0]))
         self._axes.set_xlim(shift - self._reach, shift + self._reach)
         self._verdict.set_text(self._words if frame >= self._since else "")
-
-
-def _graph(
-    axes: Axes, system: System, motion: Motion, times: FloatArray, rows: Sequence[Row]
-) -> Any:
-    """Draw how everything moves; return the line that marks the time."""
-    rocks = turns(system)
-    for row in rows:
-        source, style = row["source"], style_of(row["source"])
-        axes.plot(times, row["theta"] / (system.alpha if rocks else 1.0), line_of(source),
-                  linewidth=style.width, color=style.colour, alpha=0.9, label=source)  # fmt: skip
-    axes.set_xlim(0.0, float(times[-1]))
-    if motion.duration:
-        axes.axvspan(0.0, motion.duration, color="#f2f2f2", zorder=-1, label="ground shakes")
-    if rocks:
-        axes.set_ylim(-1.6, 1.6)
-        for side in (1.0, -1.0):
-            axes.axhline(side, color="#aaaaaa", linewidth=0.8)
-    words = "rotation  θ/θcr  [–]" if rocks else "place on the base  [m]"
-    axes.set(xlabel="time  [s]", ylabel=words)
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
-    return axes.axvline(0.0, color="#cc0000", linewidth=1.0)
 
 
 def turns(system: System) -> bool:

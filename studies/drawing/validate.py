@@ -1,4 +1,4 @@
-"""Random cases: errors in bands of their sensitivity, and errors over the engines' estimates."""
+"""Random cases: errors in bands of their sensitivity."""
 
 from __future__ import annotations
 
@@ -9,15 +9,11 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.drawing.facets import error_scale, panels, rows
-from studies.drawing.styles import LOWEST, name_of, style_of, title_of
-from studies.kit.say import part
+from studies.drawing.styles import LOWEST, name_of, style_of
 from studies.measures.differences import sensitivity_of
-from studies.measures.presets import in_order, in_words, preset_of
 
 BANDS = (0.0, 3.0, 10.0, 100.0, inf)
 """Where bands of the sensitivity S end."""
-LEAST, MARKED, MOST = 0.1, 10.0, 1e4
-"""Ends of the scale of factors, and the factor at which engines are named with their part."""
 
 
 def draw_conditioning(errors: pd.DataFrame) -> Figure:
@@ -51,30 +47,4 @@ def draw_conditioning(errors: pd.DataFrame) -> Figure:
         fontsize=10,
     )
     drawing.suptitle("Errors of the peak grow with the sensitivity S of a case", fontsize=12)
-    return drawing
-
-
-def draw_estimates(lines: pd.DataFrame) -> Figure:
-    """Draw the part of each source's errors within a multiple of its estimates, by preset."""
-    presets = lines["source"].map(preset_of)
-    names = in_order(presets)
-    drawing, grid = panels(len(names), len(names), (3.4, 3.6), 0.6, sharex=True, sharey=True)
-    for axes, preset in zip(grid, names, strict=True):
-        over = lines[presets == preset].dropna(subset="over").groupby("source")["over"]
-        within = over.agg(lambda each: (each <= MARKED).mean()).sort_values(ascending=False)
-        axes.vlines((1.0, MARKED), 0.0, 1.0, color="#999999", linewidth=0.8, linestyle=":")
-        for source, share in within.items():
-            label, colour = f"{title_of(str(source))} {part(share)}", style_of(str(source)).colour
-            axes.ecdf(over.get_group(source).clip(LEAST), label=label, color=colour)
-        axes.set(xscale="log", xlim=(LEAST, MOST), ylim=(-0.02, 1.02))
-        axes.set_title(in_words(preset), fontsize=9)
-        axes.set_xlabel("times the difference to half the step")
-        axes.legend(loc="lower right", frameon=False, handlelength=0, labelcolor="linecolor",
-                    fontsize=9)  # fmt: skip
-        axes.grid(alpha=0.25)
-    grid[0].set_ylabel("part of the errors that are smaller")
-    title = (
-        f"Errors within {MARKED:g} times the difference to half the step, in % beside each engine"
-    )
-    drawing.suptitle(title, fontsize=11)
     return drawing

@@ -70,7 +70,7 @@ def test_bodies_are_where_they_are_and_the_exact_outline_is_over_every_other(the
             for name, part in (("exact", 1.0), ("mujoco:default", 0.5))]  # fmt: skip
     stage = Stage(frame, Still(), np.arange(2.0), rows)
     stage.show(1)
-    first, second, _ = stage.figure.axes
+    first, second = stage.figure.axes
     *columns, beam = drawn(first)
     shown = [outlines(frame, 0.5 * theta), outlines(frame, theta)]
     assert np.array(drawn(second)) == pytest.approx(np.concatenate(shown))
