@@ -15,7 +15,7 @@ from matplotlib.patches import Patch, Rectangle
 from studies.drawing.facets import key, sheet
 from studies.drawing.styles import title_of
 from studies.measures.presets import look_of, preset_of
-from studies.measures.verdicts import ACCEPTED, SENTENCES, Verdict
+from studies.measures.verdicts import SENTENCES, Verdict
 
 MARKS = {
     Verdict.GOOD: ("#B5E0D3", "✓", "#000000", ""),
@@ -74,7 +74,10 @@ def _panel(
         axes.add_patch(Rectangle((i, j), 1, 1, lw=0.0, fc=colour, ec="#cccccc", hatch=hatch))
         axes.add_patch(Rectangle((i, j), 1, 1, fill=False, ec="white", lw=1.2))
         axes.text(i + 0.5, j + 0.52, symbol, ha="center", va="center_baseline", color=ink)
-    _name_methods(axes, rows, sources, len(names))
+    axes.xaxis.tick_top()
+    labels = [title_of(source).replace("average-acc", "average-\nacc") for source in sources]
+    axes.set_xticks([i + 0.5 for i in range(len(sources))], labels, fontsize=8.5, ha="left",
+                    rotation=70, rotation_mode="anchor", linespacing=0.9)  # fmt: skip
     axes.set_yticks([j + 0.5 for j in range(len(names))], names, fontsize=8.5)
     beside: dict[str, Any] = {"va": "center", "fontsize": 7.5, "color": "#555555"}
     for j, (peak, outcome) in enumerate(cases[["exact_peak", "exact_outcome"]].to_numpy()):
@@ -85,7 +88,7 @@ def _panel(
     end = 0
     for preset, members in groups.items():
         if end:
-            axes.plot([end, end], [-1.0, len(names) + 1], **line)
+            axes.plot([end, end], [-1.0, len(names)], **line)
         heading, colour = "models and SciPy", "#000000"
         if preset:
             heading, colour = look_of(preset).short, look_of(preset).colour
@@ -98,22 +101,6 @@ def _panel(
     for j, (before, after) in enumerate(itertools.pairwise(cases["group"]), start=1):
         if before != after:
             axes.plot([-0.2, len(sources) + 0.2], [j, j], **line)
-    axes.set(ylim=(len(names) + 1, 0))
+    axes.set(ylim=(len(names), 0))
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
-
-
-def _name_methods(axes: Axes, rows: pd.DataFrame, sources: list[str], level: int) -> None:
-    """Name each method above its cases; write below how many are right, of those valid."""
-    axes.xaxis.tick_top()
-    labels = [title_of(source).replace("average-acc", "average-\nacc") for source in sources]
-    axes.set_xticks([i + 0.5 for i in range(len(sources))], labels, fontsize=8.5, ha="left",
-                    rotation=70, rotation_mode="anchor", linespacing=0.9)  # fmt: skip
-    valid = rows["verdict"] != Verdict.INVALID.value
-    right = rows["verdict"].isin([verdict.value for verdict in ACCEPTED]) & valid
-    score: dict[str, Any] = {"va": "center", "fontsize": 8, "color": "#333333", "linespacing": 0.9}
-    axes.text(-0.08, level + 0.6, "right, of the valid", ha="right", **score)
-    for i, source in enumerate(sources):
-        mine = rows["source"] == source
-        text = f"{(right & mine).sum()}\n{(valid & mine).sum()}"
-        axes.text(i + 0.5, level + 0.6, text, ha="center", **score)
