@@ -103,11 +103,6 @@ def methods_of(sources: Iterable[str]) -> dict[str, Method]:
     return found | iterated
 
 
-def known_methods() -> dict[str, Method]:
-    """Return every method by its name, of all engines."""
-    return methods_of([*(method.source for method in PLAIN.values()), *ENGINES])
-
-
 def jobs(sources: Iterable[str], quick: bool) -> list[Job]:
     """Return a job for each method, setting and case; then those of scenes."""
     names = tuple(sources)
@@ -254,8 +249,7 @@ def work_precision(rows: pd.DataFrame) -> pd.DataFrame:
 
 def engines_of(table: pd.DataFrame) -> pd.DataFrame:
     """Return the lines of the engines along their steps."""
-    methods = known_methods()
-    along = [it for it in methods if it not in PLAIN and methods[it].setting == "step"]
+    along = [name for name, method in methods_of(ENGINES).items() if method.setting == "step"]
     return table[table["method"].isin(along)]
 
 

@@ -72,17 +72,10 @@ def one_of(words: Any) -> Any:
 
 def figures(*known: int) -> Parameter:
     """Return what makes an argument take some of the paper's figures, separated by spaces."""
-
-    def convert(_: type, tokens: Sequence[Token]) -> tuple[int, ...]:
-        words = [str(figure) for figure in known]
-        for token in tokens:
-            if token.value not in words:
-                among = f"it must be among {', '.join(words)}"
-                raise BadInputError(f"{token.keyword} is {token.value!r}; {among}")
-        return tuple(int(token.value) for token in tokens)
-
+    words = [str(figure) for figure in known]
+    one = _read(f"among {', '.join(words)}", lambda _, text: known[words.index(text)])
     return Parameter(
-        converter=convert,
+        converter=lambda type_, tokens: tuple(one.converter(type_, [token]) for token in tokens),
         validator=lambda _, values: refuse_repeats("--figure", values),
         consume_multiple=True,
         metavar="INT...",
