@@ -9,14 +9,13 @@ from typing import Annotated
 import pandas as pd
 from cyclopts import Parameter
 
-from analytic import MODELS
 from studies.cases.paper import sweep_cases
 from studies.kit.arguments import figures as some_figures
 from studies.kit.jobs import Job, Question
 from studies.kit.options import EffortOptions
 from studies.kit.say import capital, out_of, part
 from studies.kit.study import Figures, Study, Tables
-from studies.measures.claims import Finding, claim, table_of
+from studies.measures.claims import claim, table_of
 from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.wrongness import KINDS
@@ -60,9 +59,8 @@ def jobs(sources: Iterable[str], quick: bool, options: Options) -> list[Job]:
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows, a line for each figure and source, and the paper's conclusions."""
     compared = with_reference(rows)
-    found = [test(compared) for test in CONCLUSIONS]
-    found += outcomes_agree(compared)
-    return {"sweep": rows, "summary": summarize(compared), "findings": table_of(found)}
+    found = table_of([test(compared) for test in CONCLUSIONS])
+    return {"sweep": rows, "summary": summarize(compared), "findings": found}
 
 
 def over_all(summary: pd.DataFrame) -> pd.DataFrame:
@@ -118,7 +116,7 @@ def shown(tables: Tables) -> Tables:
     columns = ["source", "cases", "agree", *KINDS, "median_error", "p90_error", "max_error"]
     return {
         "All figures": over_all(tables["summary"])[[*columns, "wall_s"]],
-        "The paper's conclusions": tables["findings"][["holds", "statement", "source"]],
+        "The paper's conclusions": tables["findings"][["holds", "statement"]],
     }
 
 
@@ -213,18 +211,6 @@ CONCLUSIONS = (
     *(agreement_at_high_frequency, squat_blocks_differ_more),
 )
 """The paper's conclusions."""
-
-
-def outcomes_agree(compared: pd.DataFrame) -> list[Finding]:
-    """Say for every solver and engine whether, and where not, its outcomes are the exact ones."""
-    others = compared[~compared["source"].isin(MODELS)]
-    result = []
-    for source, rows in others.groupby("source", sort=False):
-        wrong = rows[~rows["agrees"]]
-        words = f"{len(wrong)} of {len(rows)} cases differ{_where(wrong)}"
-        statement = "every outcome is that of the exact solution"
-        result.append(Finding(statement, wrong.empty, words, str(source)))
-    return result
 
 
 def _of(compared: pd.DataFrame, source: str) -> pd.DataFrame:
