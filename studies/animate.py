@@ -72,8 +72,6 @@ def check_film(path: Path) -> None:
     """Refuse a file to which no film can be written."""
     if path.suffix not in (".gif", ".mp4"):
         raise BadInputError(f"--out is {str(path)!r}; it must end in .gif or .mp4")
-    if not path.parent.is_dir():
-        raise BadInputError(f"--out is {str(path)!r}; its folder must exist")
     check_writable("--out", path)
     if path.suffix == ".mp4" and find_spec("imageio_ffmpeg") is None:
         words = "that needs the extra [video]: pip install imageio-ffmpeg"

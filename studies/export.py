@@ -13,7 +13,6 @@ from engines.declaration import Stepping, Use
 from engines.run import ground
 from engines.run.slide import LEAST_SLIP, SLIP_RATE
 from engines.settings import perhaps
-from engines.world import Script
 from studies.cases.refusal import BadInputError
 from studies.compare.rows import measure
 from studies.kit.arguments import Place, Step, TimeLimit, refuse_both
@@ -112,20 +111,14 @@ def source_of(engine: str) -> str:
     return engine if colon else f"{name}:tuned"
 
 
-def script_of(use: Use) -> Script:
-    """Return a scene as an engine is used for it, in the library's own words."""
-    if use.engine.script is None:
-        raise ValueError(f"{use.engine.title} writes no scripts")
-    return use.engine.script(use.scene, use.settings, use.dt_s)
-
-
 def files(use: Use, expected: Any, exact: Any) -> dict[str, str]:
     """Return the name and text of every file of a scene that has a duration.
 
     What the script is to find, and what the exact solution does, is the largest rotation over the
     critical one, or the slips [m] where nothing rocks.
     """
-    scene, script = use.scene, script_of(use)
+    assert use.engine.script is not None  # `source_of` refuses what cannot be written out
+    scene, script = use.scene, use.engine.script(use.scene, use.settings, use.dt_s)
     environment = Environment(
         loader=PackageLoader("studies", "."), undefined=StrictUndefined, trim_blocks=True,
         keep_trailing_newline=True,

@@ -25,10 +25,6 @@ DRAWN = {2: ("exact", "rk4", "average-acceleration"), 4: LINEAR, 5: LINEAR}
 """What the paper draws; its numerical solution is the exact model's."""
 SAMPLES = ["time_s", "ground_g", "theta_ratio", "velocity_rad_s"]
 """Columns of a figure's samples."""
-WORDS = (
-    "By default what the paper draws, exact, rk4 and average-acceleration in figure 2, exact, "
-    "housner and modified in 4 and 5: "
-)
 
 
 @Parameter(name="*")
@@ -43,7 +39,9 @@ class Options:
     """
 
     figure: Annotated[tuple[int, ...], some_figures(2, 4, 5)] = (2, 4, 5)
-    sources: Annotated[tuple[str, ...] | None, sources_option(WORDS, default=False)] = None
+    sources: Annotated[
+        tuple[str, ...] | None, sources_option("By default what the paper draws: ", default=False)
+    ] = None
 
 
 def jobs(_: tuple[str, ...], quick: bool, options: Options) -> list[Job]:

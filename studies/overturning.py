@@ -289,11 +289,6 @@ def figures(tables: Tables) -> Figures:
     return drawn
 
 
-def needed(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows whose failure is the study's: on planes one of an engine is an answer."""
-    return [row for row in rows if row["source"] in MODELS]
-
-
 STUDY = Study(
     name="overturning",
     question="Which pulses overturn a block, and who predicts that wrongly?",
@@ -311,7 +306,8 @@ by pulse, of two similar blocks: --sources engines:default.""",
     finding=finding,
     shown=shown,
     figures=figures,
-    needed=needed,
+    # on planes a failure of an engine is an answer
+    needed=lambda rows: [row for row in rows if row["source"] in MODELS],
     rows="defaults",
     captions={
         "map": "Amplitude over frequency: which pulses overturn a block at once, which after an "

@@ -1,8 +1,7 @@
 """Names written at the lines they name, moved apart where they would cover each other."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,8 +14,7 @@ from studies.drawing.facets import HALO
 from studies.kit.pictures import lay_out
 
 
-@dataclass(frozen=True, slots=True)
-class Name:
+class Name(NamedTuple):
     """A name, its colour, and the point in the units of the axes that it belongs to."""
 
     text: str

@@ -106,7 +106,7 @@ def test_a_script_runs_from_any_folder_and_tells_versions_and_another_peak(tmp_p
 @pytest.mark.parametrize(("engine", "preset"), PAIRS)
 def test_settings_stand_in_the_files_letter_by_letter(engine, preset):
     use = ENGINES[engine].use(scene(preset))
-    script = export.script_of(use)
+    script = use.engine.script(use.scene, use.settings, use.dt_s)
     whole = "\n".join((*script.build, *script.step, *script.files.values()))
     whole = whole.replace("DT", repr(use.dt_s))
     assert script.settings and [line for line in script.settings if line not in whole] == []
