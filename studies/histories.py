@@ -23,6 +23,7 @@ from studies.measures.samples import samples
 LINEAR = ("exact", "housner", "modified")
 DRAWN = {2: ("exact", "rk4", "average-acceleration"), 4: LINEAR, 5: LINEAR}
 """What the paper draws; its numerical solution is the exact model's."""
+FIRST = "By default what the paper draws: "
 SAMPLES = ["time_s", "ground_g", "theta_ratio", "velocity_rad_s"]
 """Columns of a figure's samples."""
 
@@ -39,9 +40,7 @@ class Options:
     """
 
     figure: Annotated[tuple[int, ...], some_figures(2, 4, 5)] = (2, 4, 5)
-    sources: Annotated[
-        tuple[str, ...] | None, sources_option("By default what the paper draws: ", default=False)
-    ] = None
+    sources: Annotated[tuple[str, ...] | None, sources_option(FIRST, default=False)] = None
 
 
 def jobs(_: tuple[str, ...], quick: bool, options: Options) -> list[Job]:

@@ -151,7 +151,7 @@ sweep --out /proc/x | --out is '/proc/x'
 readme --root . | --root
 report --out /dev/null | --out is '/dev/null' | folder
 animate CASE --out film.avi | --out | .gif
-animate CASE --out nowhere/film.gif | --out | folder
+animate CASE --out nowhere/film.gif | --out | written
 animate CASE --out /proc/film.gif | --out | written
 
 # more than a computer has
