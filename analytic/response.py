@@ -78,7 +78,8 @@ class Response:
     outcome, reason, message
         What happened; why it failed, without numbers and with them, or what to know about it.
     peak_ratio : float
-        Largest abs(theta)/alpha; inf when overturned, 0 at rest or slid, nan when failed.
+        Largest abs(theta)/alpha; inf when overturned, 0 at rest or slid, nan when failed. An engine
+        at rest has the angle by which its block leaned in the contact.
     crossed : bool
         Whether abs(theta) exceeded alpha at some time; such a block may still survive.
     impacts : tuple of Impact

@@ -18,6 +18,7 @@ from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables
 from studies.measures.claims import Finding, table_of
 from studies.measures.differences import posed_cases
+from studies.measures.wrongness import wrong_in
 
 NAMED = {"000": "housner", "100": "onset-matched", "111": "modified"}
 """Which of onset, frequency and saddle are changed from Housner's -> the model's name."""
@@ -73,7 +74,7 @@ def grid(name: str) -> pd.DataFrame:
     columns = ["aspect", "amplitude_g", "omega_over_p", "half_cycles"]
     found = pd.DataFrame(rows, columns=columns)
     peak, outcome = peak_ratios(*posed_cases(found))
-    return found.assign(exact_peak=peak, exact_outcome=outcome)
+    return found.assign(exact_peak=peak, exact_outcome=[it.value for it in outcome])
 
 
 def jobs(_: tuple[str, ...], quick: bool) -> list[Job]:
@@ -99,11 +100,12 @@ def errors_on(name: str, changed: str) -> pd.DataFrame:
     peak, outcome = peak_ratios(*posed_cases(cases), model=VARIANTS[changed])
     exact = cases["exact_peak"].to_numpy()
     both = np.isfinite(peak) & np.isfinite(exact) & (exact > 0.0) & (peak > 0.0)
+    found = cases.assign(outcome=[it.value for it in outcome], peak_ratio=peak)
     return cases.assign(
         error=np.where(both, peak, np.nan) / np.where(both, exact, np.nan) - 1.0,
         false=np.isinf(peak) & ~np.isinf(exact),
         missed=~np.isinf(peak) & np.isinf(exact),
-        wrong=outcome != cases["exact_outcome"].to_numpy(),
+        wrong=wrong_in(found) != "",
     )
 
 

@@ -27,7 +27,7 @@ from studies.kit.jobs import Job, Question, Row, answer
 from studies.kit.say import part
 from studies.kit.study import Figures, Study, Tables
 from studies.measures.presets import titled
-from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, kinds_of
+from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, wrong_in
 from studies.sources.registry import resolve
 
 WINDOW = [item.name for item in fields(Window)]
@@ -195,7 +195,9 @@ def with_verdicts(rows: pd.DataFrame) -> pd.DataFrame:
     ]
     right = exact.reindex(pd.MultiIndex.from_frame(rows[CASE])).reset_index(drop=True)
     found = rows.reset_index(drop=True)
-    kinds, falls = kinds_of(found["outcome"], right["outcome"]), right["outcome"] == "overturned"
+    exact_as = {"outcome": "exact_outcome", "peak_ratio": "exact_peak"}
+    beside = found[[*exact_as]].join(right[[*exact_as]].rename(columns=exact_as))
+    kinds, falls = wrong_in(beside), right["outcome"] == "overturned"
     side = np.where(falls, MISSED, FALSE)
     verdict = np.select([kinds == "", kinds == FALL], [RIGHT, side], kinds)
     with np.errstate(invalid="ignore"):

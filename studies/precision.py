@@ -33,6 +33,7 @@ from studies.measures.costs import (
 )
 from studies.measures.presets import engine_of, uses_of
 from studies.measures.published import TARGETS
+from studies.measures.wrongness import REST, kind_of
 from studies.sources.registry import core_sources
 
 ALONG, SCENES = "precision", "scenes"
@@ -151,18 +152,20 @@ def along(job: Job) -> Row:
         return replace(response, setup_s=time.perf_counter() - start - response.wall_s)
 
     best, runs = best_of(timed, job.labels["budget_s"])
-    found, exact = whole, math.nan
+    found, error = whole, math.nan
     if best.outcome is Outcome.FAILED:
         found = best
     elif whole.outcome is not Outcome.FAILED:
         timed_alone = ("outcome", "peak_ratio", "steps", "wall_s")
         found = replace(whole, **{name: getattr(best, name) for name in timed_alone})
-        exact = simulate(block, case.motion, duration=case.duration).peak_ratio
+        exact = simulate(block, case.motion, duration=case.duration)
+        right = kind_of(found, exact) != REST
+        error = abs(found.peak_ratio / exact.peak_ratio - 1.0) if right else math.inf
     return {
         **summary(found),
         "setup_s": round(best.setup_s, 9),
         "runs": runs,
-        "error": abs(found.peak_ratio / exact - 1.0),
+        "error": error,
     }
 
 

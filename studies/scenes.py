@@ -23,7 +23,7 @@ from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import listed, part
 from studies.kit.study import Study, Tables
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of
-from studies.measures.wrongness import FALL, NO_ANSWER, WORDS
+from studies.measures.wrongness import FALL, NO_ANSWER, WORDS, kind_of
 from studies.sources.registry import Source, core_sources, resolve
 
 if TYPE_CHECKING:
@@ -180,9 +180,9 @@ def measure(job: Job) -> Row:
     row = {**summary(response), "reason": response.reason.name if response.reason else ""}
     seen = {name: _seen(response, name) for name in SEEN[scene]}
     if scene == "frame":
-        both = response.outcome is Outcome.ROCKED is exact.outcome
+        right = not kind_of(response, exact)
+        both = right and exact.outcome is Outcome.ROCKED
         error = response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
-        right = response.outcome is exact.outcome
         return {**row, "exact": exact.peak_ratio, "right": right, "error": error, **seen}
     if scene == "slide":
         slips = {"slips": len(response.slips), "exact_slips": len(exact.slips)}

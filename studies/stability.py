@@ -18,7 +18,8 @@ from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables
 from studies.measures.energy import SAMPLES
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
-from studies.measures.verdicts import ACCEPTED, ENERGY_BAND, Verdict, judge
+from studies.measures.verdicts import ACCEPTED, ENERGY_BAND, Verdict, judge, reference
+from studies.measures.wrongness import kind_of
 from studies.sources.registry import core_sources, resolve
 
 SOLVERS = ("rk4", "average-acceleration", "dop853", "radau")
@@ -104,8 +105,8 @@ def largest_step(
     def stable(step: float) -> bool:
         response = respond({"step": step})
         found = judge(case, source, response)
-        right = response.outcome.value == found["exact_outcome"]
-        return right and not found["energy_growth"] > ENERGY_BAND
+        wrong = kind_of(response, reference(case)[0])
+        return not wrong and not found["energy_growth"] > ENERGY_BAND
 
     return largest_good(stable, factor)
 

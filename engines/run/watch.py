@@ -526,10 +526,9 @@ def response_of(watch: Watch, events: FloatArray, history: History | None) -> Re
     complete(watch, events)
     if watch.overturned:
         outcome, ratio = Outcome.OVERTURNED, math.inf
-    elif watch.rocked:
-        outcome, ratio = Outcome.ROCKED, float(watch.peak / watch.alpha)
     else:
-        outcome, ratio = Outcome.AT_REST, 0.0
+        outcome = Outcome.ROCKED if watch.rocked else Outcome.AT_REST
+        ratio = float(watch.peak / watch.alpha)
     seen = events[: watch.events]
     uplifts, impacts, rests = (seen[seen[:, KIND] == kind] for kind in (UPLIFT, IMPACT, REST))
     return Response(

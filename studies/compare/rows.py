@@ -34,7 +34,7 @@ def compare(
 ) -> list[Row]:
     """Ask every source, and the exact solution besides; return a row for each.
 
-    It has the source's response and the exact one. `error` is relative, nan unless both rock;
+    It has the source's response and the exact one. `error` is relative, nan unless the exact block rocks and both survive;
     `velocity_ratio` is the median, `impact_error` the largest of the first impacts in units of 1/p;
     kappa and sensitivity are of the exact peak; `estimate` needs every engine at half its step.
     """
@@ -72,7 +72,7 @@ def _beside(response: Response, exact: Response, p: float) -> dict[str, float]:
     error = late = math.nan
     if exact.slips:
         error = _apart(response.slips, exact.slips, math.nan)
-    elif response.outcome is Outcome.ROCKED is exact.outcome and exact.peak_ratio > 0.0:
+    elif exact.outcome is Outcome.ROCKED and math.isfinite(response.peak_ratio):
         error = response.peak_ratio / exact.peak_ratio - 1.0
     ratios = [impact.ratio for impact in response.impacts if impact.velocity_before]
     wanted = [impact.time for impact in exact.impacts[:5]]

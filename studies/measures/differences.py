@@ -21,7 +21,7 @@ from analytic.block import Rocker
 from analytic.motion import FloatArray, Motion
 from analytic.response import Outcome, Response
 from studies.cases.paper import PULSES
-from studies.measures.wrongness import counted, kinds_of, wrong_in
+from studies.measures.wrongness import counted, wrong_in
 
 WELL_CONDITIONED = 10.0
 """Below this κ the error of a peak says more about its source than about the case."""
@@ -35,8 +35,8 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
 
     The rows have the columns that `posed_cases` takes, outcome and peak_ratio; of frames also load,
     aspect and omega_over_p then being those of a column and of the frame, and OF_FRAMES alone is
-    added. error (relative) and difference (of abs(theta)/theta_cr) are nan unless both rocked and
-    survived; kappa, kappa_eta and sensitivity where no peak survives.
+    added. error (relative) and difference (of abs(theta)/theta_cr) are nan where the outcome is wrong
+    or the exact block does not rock and survive; kappa, kappa_eta and sensitivity where no peak survives.
     """
     posed, eta, back = _different(rows)
     peak, outcome = peak_ratios(*posed, restitution=eta)
@@ -49,11 +49,12 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
         exact_outcome=[str(getattr(it, "value", it)) for it in outcome[back]],
     )
     found, right = joined["outcome"], joined["exact_outcome"]
-    both_rocked = (found == "rocked") & (right == "rocked")
+    agrees = wrong_in(joined) == ""
+    both_rock = agrees & (right == "rocked")
     compared = joined.assign(
-        agrees=kinds_of(found, right) == "",
-        error=(joined["peak_ratio"] / joined["exact_peak"] - 1.0).where(both_rocked),
-        difference=(joined["peak_ratio"] - joined["exact_peak"]).where(both_rocked),
+        agrees=agrees,
+        error=(joined["peak_ratio"] / joined["exact_peak"] - 1.0).where(both_rock),
+        difference=(joined["peak_ratio"] - joined["exact_peak"]).where(both_rock),
         false_overturning=(found == "overturned") & (right != "overturned"),
         missed_overturning=(right == "overturned") & found.isin(["rocked", "at rest"]),
     )

@@ -9,7 +9,7 @@ from analytic import conditioning, simulate
 from analytic.response import Outcome, Reason, Response
 from studies.cases.extreme import Extreme
 from studies.measures.energy import growth
-from studies.measures.wrongness import FALL, MEANINGS, NO_ANSWER, REST, WORDS, kinds_of
+from studies.measures.wrongness import FALL, MEANINGS, NO_ANSWER, REST, WORDS, kind_of
 from studies.sources.registry import resolve
 
 BAND, WIDE_BAND = 0.01, 0.1
@@ -65,7 +65,7 @@ def judge(case: Extreme, source: str, response: Response) -> dict[str, Any]:
     It is INVALID where the reference does not hold, unless the answer is right, or the run broke.
     """
     exact, kappa = reference(case)
-    both = response.outcome is Outcome.ROCKED is exact.outcome
+    both = exact.outcome is Outcome.ROCKED and not kind_of(response, exact)
     error = response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan
     grown = growth(case.block, case.motion, response)
     verdict, why = _verdict(case, response, error, grown), invalidity(case, source)
@@ -91,8 +91,8 @@ def judge(case: Extreme, source: str, response: Response) -> dict[str, Any]:
 
 def _verdict(case: Extreme, response: Response, error: float, grown: float) -> Verdict:
     exact, found = reference(case)[0], response.outcome
-    wrong = str(kinds_of([found.value], [exact.outcome.value])[0])
-    if wrong == REST and found is Outcome.AT_REST and exact.peak_ratio < SMALLEST:
+    wrong = kind_of(response, exact)
+    if found is Outcome.AT_REST and 0.0 < exact.peak_ratio < SMALLEST:
         return Verdict.UNSEEN
     if wrong:
         return Verdict(wrong)

@@ -163,7 +163,9 @@ def test_a_soft_contact_that_leans_with_its_load_has_not_lifted(leans):
     def level(_, theta):
         return -deep - 0.5 * BLOCK.width * abs(theta)
 
-    assert seen(motion, kind=Springs, raised_m=level).outcome is Outcome.AT_REST
+    found = seen(motion, kind=Springs, raised_m=level)
+    assert found.outcome is Outcome.AT_REST
+    assert found.peak_ratio == pytest.approx(most / BLOCK.alpha, rel=1e-3)
 
 
 def test_a_block_held_just_short_of_its_side_lies():

@@ -1,6 +1,7 @@
 """Frames, slides and floors: what is asked, how far off an answer is, and the line of a source."""
 
 import math
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -37,6 +38,14 @@ def test_a_source_has_one_line_of_its_frames():
     first, other = of([FRAME_ROW, {**FRAME_ROW, **wrong}], "frame-summary")
     assert (first["frames"], first["wrong"], first["largest_error"]) == (1, 0, 1e-3)
     assert (other["source"], other["wrong"], other["beyond_2_percent"]) == ("newton", 1, 1)
+
+
+@pytest.mark.parametrize(("part", "right"), [(0.09, False), (0.11, True)])
+def test_a_frame_that_hardly_moves_misses_the_rocking(part, right):
+    job = jobs(["dart:default"], True)[0]
+    peak = part * simulate(job.case.system, job.case.motion).peak_ratio
+    row = measure(replace(job, lost=Response(outcome=Outcome.ROCKED, peak_ratio=peak)))
+    assert (row["right"], row["error"] == pytest.approx(part - 1.0)) == (right, right)
 
 
 def test_a_block_that_is_held_is_no_wrong_slide_and_what_is_not_built_counts_nowhere():

@@ -91,6 +91,7 @@ DOUBLE = {"outcome": Outcome.ROCKED, "peak_ratio": 0.2}
         ("", "mujoco", AT_REST, Verdict.REST),
         ("onset + 1e-6", "mujoco", AT_REST, Verdict.UNSEEN),
         ("60 s at rest", "mujoco", DOUBLE, Verdict.REST),
+        ("60 s at rest", "mujoco", {**AT_REST, "peak_ratio": 2e-3}, Verdict.GOOD),
         ("friction 0.3", "mujoco", DOUBLE, Verdict.INVALID),
         ("friction 1", "mujoco", DOUBLE, Verdict.OFF),
         # the pivot lifts off: not the engine's fault, but a solver solves the same equation
@@ -130,8 +131,8 @@ def test_largest_stable_step_has_the_right_outcome_and_the_next_has_not():
     (row,) = rows_of("steps", "peak after an impact", "mujoco:tuned")
     for factor, stable in ((1.0, True), (row["factor"], False)):
         step = factor * row["largest_stable"]
-        outcome = resolve(row["source"]).call(CASE.block, CASE.motion, step=step).outcome
-        assert (outcome is Outcome.ROCKED) == stable
+        found = resolve(row["source"]).call(CASE.block, CASE.motion, step=step)
+        assert (found.peak_ratio >= 0.1 * EXACT.peak_ratio) == stable
 
 
 @pytest.mark.parametrize("table", ["matrix", "steps"])

@@ -22,30 +22,37 @@ REST_WORD, ROCKED, OVER, _, FAILED = (outcome.value for outcome in Outcome)
 
 
 @pytest.mark.parametrize(
-    ("found", "right", "kind"),
+    ("found", "peak", "right", "exact_peak", "kind"),
     [
-        *((word, word, "") for word in (REST_WORD, ROCKED, OVER)),
-        *((OVER, right, FALL) for right in (REST_WORD, ROCKED)),
-        *((found, OVER, FALL) for found in (REST_WORD, ROCKED)),
-        (REST_WORD, ROCKED, REST),
-        (ROCKED, REST_WORD, REST),
-        *((found, ROCKED, NO_ANSWER) for found in (FAILED, "slid", math.nan)),
-        (FAILED, OVER, NO_ANSWER),
+        (OVER, math.inf, OVER, math.inf, ""),
+        *((OVER, math.inf, right, peak, FALL) for right, peak in ((REST_WORD, 0.0), (ROCKED, 0.2))),
+        *((found, peak, OVER, math.inf, FALL) for found, peak in ((REST_WORD, 0.0), (ROCKED, 0.2))),
+        # a tenth of the exact peak tells rest from rocking, whatever a contact's depth says
+        *((word, 0.00249, ROCKED, 0.0025, "") for word in (REST_WORD, ROCKED)),
+        *((word, 0.021, ROCKED, 0.2057, "") for word in (REST_WORD, ROCKED)),
+        *((word, 0.020, ROCKED, 0.2057, REST) for word in (REST_WORD, ROCKED)),
+        # and a hundredth of the critical rotation, where there is no exact peak
+        *((word, 0.009, REST_WORD, 0.0, "") for word in (REST_WORD, ROCKED)),
+        *((word, 0.011, REST_WORD, 0.0, REST) for word in (REST_WORD, ROCKED)),
+        (ROCKED, 0.0, ROCKED, 0.0, ""),
+        *((found, 0.2, ROCKED, 0.2, NO_ANSWER) for found in (FAILED, "slid", math.nan)),
+        (FAILED, math.nan, OVER, math.inf, NO_ANSWER),
     ],
 )
-def test_each_pair_of_outcomes_is_right_or_of_one_kind(found, right, kind):
-    assert list(kinds_of([found], [right])) == [kind]
+def test_each_answer_is_right_or_of_one_kind(found, peak, right, exact_peak, kind):
+    assert list(kinds_of([found], [peak], [right], [exact_peak])) == [kind]
 
 
 def test_nothing_is_wrong_beside_no_reference():
     with pytest.raises(ValueError, match="an exact outcome is none of"):
-        kinds_of([ROCKED], [FAILED])
+        kinds_of([ROCKED], [0.2], [FAILED], [math.nan])
 
 
 def test_kinds_are_counted():
-    rows = pd.DataFrame(
-        {"outcome": [OVER, REST_WORD, FAILED, ROCKED, ROCKED], "exact_outcome": [ROCKED] * 5}
-    )
+    rows = pd.DataFrame({
+        "outcome": [OVER, REST_WORD, FAILED, ROCKED, REST_WORD],
+        "peak_ratio": [math.inf, 0.0, math.nan, 0.3, 0.03],
+    }).assign(exact_outcome=ROCKED, exact_peak=0.2)  # fmt: skip
     assert counted(wrong_in(rows)) == dict.fromkeys(KINDS, 1) and set(MEANINGS) == set(KINDS)
 
 
