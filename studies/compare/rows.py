@@ -34,8 +34,9 @@ def compare(
 ) -> list[Row]:
     """Ask every source, and the exact solution besides; return a row for each.
 
-    It has the source's response and the exact one. `error` is relative, nan unless the exact block rocks and both survive;
-    `velocity_ratio` is the median, `impact_error` the largest of the first impacts in units of 1/p;
+    It has the source's response and the exact one. `error` is relative, nan unless the exact block
+    rocks and both survive; `velocity_ratio` is the median, `impact_error` the largest of the first
+    impacts in units of 1/p;
     kappa and sensitivity are of the exact peak; `estimate` needs every engine at half its step.
     """
     own = yours.options(sources, case.system)
