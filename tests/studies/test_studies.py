@@ -122,6 +122,12 @@ def within(name):
     return 0.3 if source.preset in UNTUNED else 2e-2
 
 
+@pytest.mark.parametrize("name", ["rk4", "rk45", "lsoda"])
+def test_a_history_ends_where_the_peak_is_decided(name):
+    history = respond(name, BLOCK, FULL_SINE, times=np.linspace(0.0, 6.0, 13)).history
+    assert history.time.tolist() == [0.0, 0.5, 1.0] and abs(history.theta[-1]) > 0.1
+
+
 @pytest.mark.parametrize("name", EVERY_NAME)
 def test_every_source_answers_figure_5b(name):
     times = np.linspace(0.0, 1.5, 16)
