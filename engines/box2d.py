@@ -78,6 +78,7 @@ class Box2DWorld:
         self._friction = float(s.friction)  # of a pair the root of the product counts
         self._unit, self._sunk = s.unit_of(scene), s.sunk_of(scene)
         self._reach = 0.5 * (s.margin or 0.0) * fall(scene, dt_s) * self._unit
+        self._free = -self._reach  # height of the floor below a corner that is aloft
         iterations = iterations_for(scene, s.iterations, s.sweeps) or MANUAL_ITERATIONS
         self.iterations = iterations, s.position_iterations
         self._way = s.floor if scene.frame == "world" else ""
@@ -156,7 +157,7 @@ class Box2DWorld:
             if led:
                 felt = (step.base_x * self._unit - floor.position.x) / step.dt_s
             else:
-                floor.position = (at, (self._reach if pivot else -self._reach) - self._sunk)
+                floor.position = (at, (self._reach if pivot else self._free) - self._sunk)
             velocity = (felt, 0.0)
             if back and pivot:
                 corner = side * self._half[0], -self._half[1]
@@ -203,9 +204,9 @@ class Box2DWorld:
 class Box2DStacks(Box2DWorld):
     """Columns that a beam rests on by a polygon for each side, whose skin says what touches it.
 
-    The free corners above come into contact with those below in the steps of an impact, and not
-    before it: the least that one of them comes early, the impact is split in two, and the peak is
-    20 % off. Nor does the solver begin with the impulses of the step before: from there it finds
+    The free corners above and below come into contact in the steps of an impact, and not before it:
+    where one of them comes early, by a rounding, the impact is split in two, and the peak is 20 %
+    off. Nor does the solver begin with the impulses of the step before: from there it finds
     columns that part, whose friction and load would hold, too.
     """
 
@@ -231,6 +232,7 @@ class Box2DStacks(Box2DWorld):
         for side, shape in self._tops:
             touches = strikes or step.phase is ContactPhase.REST or step.side in (side, 0.0)
             shape.radius = max(self._skin + (reach if touches else free), 0.0)
+        self._free = free
         super().step(step._replace(side=0.0) if strikes else step)
 
 

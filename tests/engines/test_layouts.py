@@ -65,6 +65,15 @@ def test_a_frame_lands_as_a_block(engine, motion, system, within, whole, goes):
     assert ratios == pytest.approx([system.restitution] * len(ratios), rel=10.0 * whole)
 
 
+@pytest.mark.slow
+@pytest.mark.skipif("box2d" not in HERE, reason="it is not installed")
+def test_box2d_does_not_split_an_impact_where_a_rounding_closes_a_foot_early():
+    system = RockingFrame(width=1.0592464, height=7.833471, columns=4, load=1.8361555)
+    motion = SinePulse.in_g(0.1767078749, omega=3.4386632 * system.p, half_cycles=2)
+    _, found = agreed("box2d", motion, system=system, duration=motion.duration)
+    assert found.impacts[0].ratio == pytest.approx(system.restitution, rel=2e-4)
+
+
 @pytest.mark.parametrize("engine", STACKING)
 def test_a_frame_rocks_at_equal_steps(engine):
     """Where in a step an impact falls costs half a per cent; PyBullet's boxes lose one more."""
