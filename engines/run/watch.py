@@ -404,7 +404,7 @@ def turning(watch: Watch) -> None:
         bend = (b.rate - c.rate) / (c.rate_s - b.rate_s) * side
         rate = extrapolated(watch.two, 0, 2, b.time)
         peak = max(peak, abs(b.theta) + 0.5 * rate * rate / bend)
-        watch.turned = b.time >= watch.motion_end and watch.lifted
+        watch.turned = watch.turned or (b.time >= watch.motion_end and watch.lifted)
     if peak > watch.peak:
         watch.peak = peak
         watch.crossed = peak > watch.alpha

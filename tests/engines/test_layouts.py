@@ -196,6 +196,13 @@ def test_a_base_that_is_a_box_is_as_long_as_a_slide(engine):
     assert found.slips[0] == pytest.approx(18.0 / 0.981, rel=1e-2)
 
 
+@pytest.mark.skipif("physx" not in HERE, reason="it is not installed")
+def test_a_frame_that_trembles_when_it_has_come_to_rest_is_decided():
+    motion = SinePulse.in_g(0.4, omega=9.0, half_cycles=2)
+    found = rocked("physx", motion, system=frame(4.0, 4), preset="default", max_steps=2_000)
+    assert found.outcome is Outcome.ROCKED
+
+
 class Trembles(Bare):
     """A world in which a box is pushed to and fro, step by step, by a hundredth of a tremor's way.
 
