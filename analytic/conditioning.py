@@ -22,7 +22,7 @@ from analytic.response import Outcome
 from analytic.simulate import OUTCOMES
 from analytic.start import REST, pose
 
-MOVES = (-1e-4, 1e-4, -1e-6, 1e-6)
+MOVES = (-1e-3, 1e-3, -1e-4, 1e-4, -1e-6, 1e-6)
 """Relative changes of the motion's scale, and of eta, that a `sensitivity` is found with."""
 NUDGE = 3e-7
 """Relative change of a condition number's difference."""
@@ -85,7 +85,7 @@ def sensitivities(*cases: Any, **options: Any) -> FloatArray:
     Examples
     --------
     >>> sensitivities(0.32, [0.4, 0.5], 2.0, 2).round(2)
-    array([26.39,  0.  ])
+    array([26.66,  0.  ])
     """
     return _largest_move(_many(*cases, **options))
 

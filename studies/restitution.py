@@ -27,7 +27,7 @@ from studies.cases.refusal import BadInputError
 from studies.cases.ways import WAYS, WITHOUT
 from studies.kit.arguments import Engines
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.say import capital, one_line, out_of
+from studies.kit.say import capital, listed, one_line, out_of
 from studies.kit.study import Figures, Study, Tables
 from studies.sources.registry import scene_of
 
@@ -41,6 +41,9 @@ VARIED = {
 USUAL = {name: usual for name, (usual, *_) in VARIED.items()}
 AHEAD = 20
 """Steps to that of the impact."""
+SLIDES = 0.1
+"""A corner that leaves faster along the base than this part of its approach has slid, where friction
+is to hold it; what it gives back is of another impact."""
 SHOWN = 0.6
 """The coefficient for which settings are quoted."""
 STILL = SinePulse(amplitude=0.0, omega=1.0, half_cycles=1)
@@ -183,16 +186,33 @@ def deviations(rows: pd.DataFrame) -> pd.DataFrame:
 def finding(tables: Tables) -> str:
     """Say how many engines miss a coefficient that is set plainly, and how well all keep it."""
     corners = tables["corners"]
-    plain, best = (corners.drop_duplicates("engine", keep=end) for end in ("first", "last"))
-    within = f"within {best['off_over_all'].max():.2g}"
+    plain, best = corners.drop_duplicates("engine"), best_of(corners)
+    slides = best["slide"] > SLIDES
+    within = f"within {best.loc[~slides, 'off_over_all'].max():.2g}"
+    sliding = [ENGINES[name].title for name in best.loc[slides, "engine"]]
     if len(plain) == 1:
         title = ENGINES[plain["engine"].iloc[0]].title
+        if sliding:
+            return f"The corner that strikes slides in every way that was tried with {title}."
         return f"{title} keeps a coefficient of restitution {within} with its best settings."
     missed = capital(out_of((plain["off"] > 0.5).sum(), len(plain)))
     return (
-        f"{missed} engines miss a coefficient of restitution that is set in the plainest way, "
-        f"and with their best settings all keep it {within}."
+        f"{missed} engines miss a coefficient of restitution that is set in the plainest way, and "
+        f"with their best settings {out_of((~slides).sum(), len(best))} keep it {within}"
+        f"{f'; the corner slides with {listed(sliding)}' if sliding else ''}."
     )
+
+
+def best_of(corners: pd.DataFrame) -> pd.DataFrame:
+    """Return the line of each engine's best way.
+
+    It is one with which the corner does not slide, where there is one; of these the one that is
+    least off over all strikes, and, where these are as far off, over the usual ones.
+    """
+    ranked = corners.assign(slid=corners["slide"] > SLIDES).sort_values(
+        ["slid", "off_over_all", "off"], kind="stable"
+    )
+    return ranked.drop_duplicates("engine").drop(columns="slid").sort_index()
 
 
 def shown(tables: Tables) -> Tables:
@@ -210,7 +230,9 @@ def figures(tables: Tables) -> Figures:
     """Draw the strikes of each engine's plainest and best way."""
     from studies.drawing.restitution import draw_strikes
 
-    return {"strikes": draw_strikes(tables["restitution"], tables["corners"])}
+    corners = tables["corners"]
+    plain, best = corners.drop_duplicates("engine"), best_of(corners)
+    return {"strikes": draw_strikes(tables["restitution"], plain, best)}
 
 
 STUDY = Study(

@@ -198,7 +198,7 @@ STUDY = Study(
     help="""Random blocks: H/B from 1.2 to 12, B from 0.02 to 10 m; pulses of 1.02 to 4 onsets.
 
 Outcomes, quantiles of the error, and how far a small error of the pulse moves the peak of each
-case: its condition numbers, and its sensitivity to errors of 1e-6 and 1e-4. Writes errors.csv.
+case: its condition numbers, and its sensitivity to errors of 1e-6 to 1e-3. Writes errors.csv.
 With --halves it writes estimate.csv, estimates.csv and factors.csv: how far off an answer is
 according to the engine itself at half the step. Each needs a folder of its own.""",
     sources=core_sources(),

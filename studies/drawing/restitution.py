@@ -15,9 +15,8 @@ TOP = 1.25
 """End of the scale of a ratio of speeds."""
 
 
-def draw_strikes(rows: pd.DataFrame, corners: pd.DataFrame) -> Figure:
+def draw_strikes(rows: pd.DataFrame, plain: pd.DataFrame, best: pd.DataFrame) -> Figure:
     """Draw the speed of the corner over the coefficient, in each engine's plainest and best way."""
-    plain, best = (corners.drop_duplicates("engine", keep=end) for end in ("first", "last"))
     drawing, grid = panels(len(best), 4, (2.35, 2.5), 0.9, sharex=True, sharey=True)
     for axes, first, last in zip(grid, plain.itertuples(), best.itertuples(), strict=True):
         mine, look = rows[rows["engine"] == last.engine], style_of(str(last.engine))

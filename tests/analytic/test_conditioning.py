@@ -95,18 +95,19 @@ def near_onset(scale=1.0):
     return SinePulse.in_g(scale * 0.17396032278997067, omega=2.10102467443576, half_cycles=2)
 
 
-def test_near_onset_it_sees_what_the_derivative_does_not():
+@pytest.mark.parametrize(("whole", "move", "rise"), [(1.0, 1e-4, 0.68), (1.0003, 1e-3, 2.35)])
+def test_near_onset_it_sees_what_the_derivative_does_not(whole, move, rise):
     """An uplift that comes at 0.9999 of the amplitude: against a general integrator."""
-    kappa = max(map(abs, conditioning(NEAR_ONSET, near_onset())))
+    kappa = max(map(abs, conditioning(NEAR_ONSET, near_onset(whole))))
     assert kappa < 100.0
     still, weaker = (
         peak_and_impacts("exact", NEAR_ONSET, near_onset(scale), most=30)[0]
-        for scale in (1.0, 0.9999)
+        for scale in (whole, whole * (1.0 - move))
     )
-    assert weaker / still - 1.0 == pytest.approx(0.68, abs=0.01)
-    found = sensitivity(NEAR_ONSET, near_onset())
-    assert found == pytest.approx((weaker / still - 1.0) / 1e-4, rel=1e-3)
-    assert found > 50.0 * kappa
+    assert weaker / still - 1.0 == pytest.approx(rise, abs=0.01)
+    found = sensitivity(NEAR_ONSET, near_onset(whole))
+    assert found == pytest.approx((weaker / still - 1.0) / move, rel=1e-3)
+    assert found > 5e-3 * kappa / move
 
 
 def test_where_the_peak_is_smooth_it_is_the_condition_number():
@@ -114,7 +115,8 @@ def test_where_the_peak_is_smooth_it_is_the_condition_number():
     found = sensitivities(*CASES)
     calm = kappa < 10.0
     assert calm.sum() > 90
-    assert np.median(np.abs(found[calm] / kappa[calm] - 1.0)) < 1e-3
+    # over a move of 1e-3 a peak bends by about kappa times that
+    assert np.median(np.abs(found[calm] / kappa[calm] - 1.0) / kappa[calm]) < 1e-3
     assert np.all(found[calm] > 0.99 * kappa[calm])
 
 
@@ -137,7 +139,7 @@ def test_of_a_block_that_is_pushed_onto_its_base_it_is_that_of_the_energy():
         left = (scale * BLOCK.restitution) ** 2 * energy
         return BLOCK.alpha - math.acos(left + math.cos(BLOCK.alpha))
 
-    moves = (1e-4, -1e-4, 1e-6, -1e-6)
+    moves = (1e-3, -1e-3, 1e-4, -1e-4, 1e-6, -1e-6)
     wanted = max(abs(peak(1.0 + move) / peak(1.0) - 1.0) / abs(move) for move in moves)
     assert sensitivity(BLOCK, Still(), start=(tilt, -rate)) == pytest.approx(wanted, rel=1e-7)
     # tilted further than that, the block is highest where it starts

@@ -71,8 +71,9 @@ def test_quantiles_are_of_what_survives():
         agrees=[True, True, True, False, True],
         error=[3.66, -0.2, 1e-3, math.nan, math.nan],
     )
-    (line,) = quantiles(errors.assign(outcome="rocked")).to_dict("records")
-    assert (line["cases"], line["agree"], line["fall_wrong"]) == (5, 4, 1)
+    found = errors.assign(outcome="rocked", peak_ratio=[0.023, 0.04, 0.1, 0.03, 0.8])
+    (line,) = quantiles(found).to_dict("records")
+    assert (line["cases"], line["fall_wrong"], line["rest_wrong"]) == (5, 1, 1)
     assert (line["median_error"], line["max_error"]) == (0.2, 3.66)
 
 
