@@ -207,12 +207,19 @@ def stored(folder):
     )
 
 
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The folder of a run that was not ended."""
+    folder = tmp_path_factory.mktemp("whole")
+    assert python(*SWEEP, "--out", folder).returncode == 0
+    return folder
+
+
 @pytest.mark.slow
 @pytest.mark.processes
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
-def test_a_run_that_is_ended_goes_on_with_equal_rows(number, tmp_path):
-    whole, halved = tmp_path / "whole", tmp_path / "halved"
-    assert python(*SWEEP, "--out", whole).returncode == 0
+def test_a_run_that_is_ended_goes_on_with_equal_rows(number, whole, tmp_path):
+    halved = tmp_path / "halved"
     process = waiting(halved, 20, *SWEEP)
     process.send_signal(number)
     began = time.monotonic()
