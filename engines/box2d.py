@@ -348,7 +348,7 @@ ENGINE = Engine(
     stacks=True,
     presets=(
         NAIVE,
-        NAIVE.at_rest(),
+        replace(NAIVE.at_rest(), rest_s=0.0),  # it would count as time to fall asleep
         NAIVE.recommended(
             *RECOMMENDED,
             iterations=8,

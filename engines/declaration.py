@@ -138,6 +138,11 @@ RECOMMENDED = "recommended"
 UNTUNED = ("default", AT_REST, RECOMMENDED)
 """Names of the presets that are the library's own."""
 
+REST_S = 0.2
+"""For so long [s] the ground is at rest in these before the motion, in equal steps: a body that was
+just put down carries no load yet, and what an engine makes of that is no error of its rocking. A
+block that begins leaning or moving is let go at once, as it would not stay so."""
+
 TITLES = {
     "default": "as its documentation shows it",
     AT_REST: "the same on a base at rest",
@@ -166,6 +171,7 @@ class Preset:
     stacked : settings in place of some of these where bodies rest on others; None where none can
     sliding : settings in place of some of these where nothing rocks
     stacks : builds a scene of bodies that rest on others, in place of the engine's build
+    rest_s : for how long the ground is at rest before the motion [s], where it is not `REST_S`
     own : of "default", settings that are not the library's own -> what it has by itself
     """
 
@@ -182,10 +188,14 @@ class Preset:
     stacked: Mapping[str, Any] | None = field(default_factory=dict)
     sliding: Mapping[str, Any] = field(default_factory=dict)
     stacks: Builder | None = None
+    rest_s: float | None = None
     own: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "title", self.title or TITLES.get(self.name, self.name))
+        if self.rest_s is None:
+            rests = self.name in UNTUNED and self.stepping is Stepping.FIXED
+            object.__setattr__(self, "rest_s", REST_S if rests else 0.0)
         given = sum(map(math.isfinite, (self.step, self.step_s)))
         if given != (self.stepping is Stepping.FIXED):
             raise ValueError(
@@ -304,10 +314,13 @@ class Engine:
             dt_s = 1.0 / (ACCURACIES[scene.accuracy] * scene.system.p)
         else:
             dt_s = preset.step / scene.system.p if math.isnan(preset.step_s) else preset.step_s
+        rest_s = scene.rest_s
+        if rest_s is None:
+            rest_s = preset.rest_s if scene.begins_at_rest else 0.0
         return Use(
             self,
             preset,
-            scene if scene.frame else replace(scene, frame=preset.frame),
+            replace(scene, frame=scene.frame or preset.frame, rest_s=rest_s),
             replace(preset.settings, **{**(other or {}), **scene.settings, **given}),
             dt_s,
             lacking[best],
@@ -321,6 +334,8 @@ class Engine:
             return f"{self.title} is not built here for {STACKED}"
         if preset.stepping is Stepping.LANDING and not layout.rocking:
             return f"nothing rocks here on whose impacts {self.name}:{preset.name} could land"
+        if scene.rest_s and preset.stepping is not Stepping.FIXED:
+            return "only equal steps can begin before the motion"
         if stacked and preset.stacked is None:
             return f"{self.name}:{preset.name} is not built here for {STACKED}"
         if (frame := scene.frame or preset.frame) not in self.frames:

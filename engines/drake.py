@@ -262,8 +262,9 @@ class DrakeWorld:
         if self._moving:
             self._drive(step.base_x, step.base_velocity)
         self._count += 1
+        self._time += step.dt_s
         # a discrete plant changes at the beginning of a step: half of one later it has, once
-        self._go_on(step.end_s if self._continuous else (self._count - 0.5) * self._dt)
+        self._go_on(self._time if self._continuous else (self._count - 0.5) * self._dt)
         if self._moving:
             self._look_back(step.base_x)
 

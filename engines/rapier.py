@@ -458,7 +458,7 @@ ENGINE = Engine(
     stacks=True,
     presets=(
         NAIVE,
-        NAIVE.at_rest(),
+        replace(NAIVE.at_rest(), rest_s=0.0),  # it would count as time to fall asleep
         NAIVE.recommended(*RECOMMENDED, step_s=1.0 / 120.0, substeps=8, coulomb=True),
         Preset(name="tuned", settings=TUNED, step=5e-4),
         Preset(

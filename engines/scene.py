@@ -257,6 +257,9 @@ class Scene:
     duration : float or None
         Observe until this time [s], at least the motion's own duration. By default what `watched`
         says, and until peak and outcome are decided.
+    rest_s : float or None
+        The ground is at rest for so long [s] before the motion, in which nothing is observed; by
+        default as the preset does it. 0 where the block does not begin at rest.
     times : sequence of float or None
         Increasing ground times [s] at which the response is sampled, as long as it is observed.
     time_limit_s, max_steps : float, int
@@ -286,6 +289,7 @@ class Scene:
     friction: float | None = None
     step: float | None = None
     duration: float | None = None
+    rest_s: float | None = None
     times: Sequence[float] | None = None
     time_limit_s: float | None = None
     max_steps: int = 5_000_000
@@ -301,7 +305,7 @@ class Scene:
             one_of("frame", self.frame, FRAMES)
         put = partial(object.__setattr__, self)
         sizes = ("density", "depth", "step", "time_limit_s", "max_steps")
-        for name in (*sizes, "friction", "duration"):
+        for name in (*sizes, "friction", "duration", "rest_s"):
             if (value := getattr(self, name)) is not None:
                 put(name, positive(name, value) if name in sizes else finite(name, value))
         put("start", self._checked_start(self.start))
@@ -313,6 +317,9 @@ class Scene:
         if self.duration is not None and self.duration < (least := self.motion.duration):
             words = f"it must be at least the motion's {least!r}"
             raise ValueError(f"duration is {self.duration!r}; {words}")
+        if self.rest_s and (self.rest_s < 0.0 or not self.begins_at_rest):
+            words = "it must be 0 where the block does not begin at rest, and never negative"
+            raise ValueError(f"rest_s is {self.rest_s!r}; {words}")
         put("times", _increasing("times", self.times))
         put("settings", MappingProxyType(dict(self.settings)))
 
@@ -342,6 +349,18 @@ class Scene:
     def bodies(self) -> tuple[Body, ...]:
         """The bodies, in the order of a world's state."""
         return self.layout.bodies
+
+    @property
+    def begins_at_rest(self) -> bool:
+        """Whether every body begins upright and still."""
+        return all(body.at.at_rest for body in self.bodies)
+
+    @property
+    def shaking(self) -> list[list[float]]:
+        """The base's motion, a row of `SEGMENT_COLUMNS` each: the rest before it is one as well."""
+        rows: list[list[float]] = self.motion.segments().tolist()
+        rest = [-self.rest_s, *[0.0] * (len(rows[0]) - 1)] if self.rest_s else []
+        return [rest, *rows] if rest else rows
 
     @property
     def stacked(self) -> bool:

@@ -12,6 +12,7 @@ from engines import ENGINES
 from engines.declaration import Stepping, Use
 from engines.run import ground
 from engines.run.slide import LEAST_SLIP, SLIP_RATE
+from engines.run.steps import begin_of
 from engines.settings import perhaps
 from studies.cases.refusal import BadInputError
 from studies.compare.rows import measure
@@ -134,10 +135,11 @@ def files(use: Use, expected: Any, exact: Any) -> dict[str, str]:
         version=project_version(),
         packages={name: version_of(name) for name in use.engine.packages},
         listed=listed,
+        begin=begin_of(scene, use.dt_s),
         slow=SLIP_RATE * math.sqrt(scene.system.gravity * scene.system.width),
         short=LEAST_SLIP * scene.system.width,
     )
-    rows = "".join(f"    {tuple(map(float, row))},\n" for row in scene.motion.segments())
+    rows = "".join(f"    {tuple(map(float, row))},\n" for row in scene.shaking)
     segments = f"SEGMENTS = (\n{rows})\n\nmean_velocity = mean_velocity_of(SEGMENTS)\n"
     shaking = f"{inspect.getsource(ground)}\n\n{segments}"
     return {"block.py": block, "ground.py": shaking, **script.files}

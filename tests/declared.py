@@ -27,9 +27,9 @@ class Miss(Enum):
 MISSED = {
     Miss.MIRROR: (
         *("pymunk:default", "pymunk:default-at-rest", "pymunk:recommended"),
-        *("box2d:default", "box2d:default-at-rest", "box2d:recommended"),
+        *("box2d:default", "box2d:default-at-rest", "drake:default"),
         *("rapier:default", "rapier:default-at-rest", "rapier:recommended"),
-        *("physx:default", "physx:default-at-rest", "physx:recommended"),
+        *("physx:default", "physx:default-at-rest"),
     ),
     Miss.PEAK: (
         *("mujoco:recommended", "pymunk:default-at-rest", "drake:default-at-rest"),

@@ -279,7 +279,7 @@ class MujocoWorld:
             else:
                 places += (at.x, 0.0, at.z, math.cos(half), 0.0, math.sin(half), 0.0)
                 velocities += (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
-        if not all(body.at.at_rest for body in self._scene.bodies):
+        if not self._scene.begins_at_rest:
             self._data.qpos[: len(places)] = places
             self._data.qvel[: len(velocities)] = velocities
 
@@ -419,7 +419,7 @@ def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
     model = ElementTree.tostring(root, encoding="unicode") + "\n"
     build = [f'model = mujoco.MjModel.from_xml_path(str(HERE / "{MODEL}"))']
     build.append("data = mujoco.MjData(model)")
-    if not all(body.at.at_rest for body in scene.bodies):
+    if not scene.begins_at_rest:
         build.append(f"data.qpos[:] = {world.arrays.position.tolist()}")
         build.append(f"data.qvel[:] = {world.arrays.velocity.tolist()}")
     world.close()

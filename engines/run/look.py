@@ -70,7 +70,7 @@ def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray)
 
     Return whether it goes on; runs are updated, and rows and events of lists are written.
     """
-    if runs[0].pace.time > 0.0 and not undecided(runs, lists, state):
+    if runs[0].pace.last_dt > 0.0 and not undecided(runs, lists, state):
         return False
     chosen = next_step(runs, lists, state)
     step[0], step[1], step[2] = chosen.dt_s, chosen.end_s, chosen.kick_s
@@ -104,6 +104,11 @@ def undecided(runs: Sequence[Run], lists: Lists, state: FloatArray) -> bool:
     """See the state at the end of a step; return whether the run goes on; see `look`."""
     first = runs[0]
     pace = first.pace
+    if pace.time <= 0.0:  # nothing is looked at before the motion, nor where a box has crept to
+        if first.slide.on:
+            slide = first.slide
+            slide.place = slide.origin = slide.stays_at = state[0][0] - slide.home
+        return True
     if first.slide.on:
         see_slide(first.slide, lists.rows[0], lists.events[0], pace.time, pose_in(state, 0))
         return not (first.slide.done or first.slide.problem)
@@ -145,7 +150,7 @@ class Monitor:
             )
             for body in scene.bodies[: max(rocking, 1)]
         ]
-        ground = np.array(rows_of(scene.motion.segments().tolist()))
+        ground = np.array(rows_of(scene.shaking))
         rows = np.zeros((len(self.runs), 0, len(Row._fields)))
         if scene.times is not None:
             rows = np.array([[Row(0.0, 0.0, *scene.start)]] * len(self.runs))

@@ -46,7 +46,7 @@ class Pace:
     felt : whether a block on a base at rest carries the body force of the base's acceleration
     same : difference [s] of two times that are the same
     motion_end, end : of the motion, and of the observation at the least [s]
-    time, last_dt : end and length of the last step [s]
+    time, last_dt : end and length of the last step [s]; before 0 the base is at rest
     velocity, place : of the base at the moment of the last velocity [m/s], and at the step's end
     stops, loads : how many have passed
     left, time_to_uplift : until the next stop; until a block at rest may lift, or all ends [s]
@@ -93,7 +93,13 @@ def begin_pace(
         same=max(SAME_TIME * dt_s, resolution.time_s),
         motion_end=scene.motion.duration,
         end=scene.watched,
+        time=begin_of(scene, dt_s),
     )
+
+
+def begin_of(scene: Scene, dt_s: float) -> float:
+    """Return when [s] equal steps begin: so many before the motion as last for its rest."""
+    return -math.ceil((scene.rest_s or 0.0) / dt_s * (1.0 - SAME_TIME)) * dt_s
 
 
 def advance(pace: Pace, ground: Any, choice: Choice) -> Step:
@@ -104,6 +110,7 @@ def advance(pace: Pace, ground: Any, choice: Choice) -> Step:
     """
     dt, phase, side = choice
     begin, end = pace.time, pace.time + dt
+    end = 0.0 if abs(end) < 0.5 * dt else end  # the motion begins with a step, however many rest
     # from the moment of the last velocity to that of this one
     kick_s = pace.part * dt + (1.0 - pace.part) * pace.last_dt
     mean = mean_velocity_over(ground, begin, end)

@@ -21,6 +21,9 @@ from engines.declaration import (
 STILL = f"{OWN_STEP}, on a base at rest"
 """The defaults at their own step once more, in the other frame."""
 
+AT_ONCE = f"{OWN_STEP}, shaken at once"
+"""The same without the rest before the motion."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variant:
@@ -62,6 +65,7 @@ def variants(engine: str) -> Iterator[Variant]:
         if name == DEFAULT:
             own = replace(plain[name], factor=OWN_STEPS, level=OWN_STEP)
             yield own
+            yield replace(own, level=AT_ONCE, scene={"rest_s": 0.0})
             if declared.preset(name).frame == "world":
                 yield replace(own, level=STILL, scene={"frame": "base"})
         for factor in declared.factors:

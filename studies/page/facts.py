@@ -11,8 +11,18 @@ from typing import Any, TypeAlias
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import BEST, LEFT_OUT, Help, Stepping
+from engines.declaration import (
+    BEST,
+    DEFAULT,
+    LEFT_OUT,
+    OWN_STEP,
+    OWN_STEPS,
+    REST_S,
+    Help,
+    Stepping,
+)
 from engines.registry import OWN
+from studies.cases.variants import AT_ONCE
 from studies.kit.identity import NOT_INSTALLED
 from studies.kit.say import capital, duration, listed, part
 from studies.kit.store import engines_of, provenance_of, whole_runs
@@ -27,6 +37,8 @@ Line: TypeAlias = "Mapping[Any, Any] | pd.Series[Any]"
 Table: TypeAlias = tuple[list[str], list[list[str]]]
 """Heads, and the cells of each row."""
 TITLES = {name: ENGINES[name].title for name in OWN}
+LEVELS = (OWN_STEP, AT_ONCE)
+"""With the rest before the motion, and without."""
 
 
 def presets(published: Path) -> pd.DataFrame:
@@ -168,6 +180,21 @@ def helps(published: Path) -> Table:
         if {*cells} != {"–"}:
             rows.append([capital(each.value), *cells])
     return ["landing without", *(TITLES[name] for name in engines)], rows
+
+
+def unsettled(published: Path) -> Table:
+    """Return the largest error of each engine as documented, and without the rest before it."""
+    lines = table_in(published / "contact", "variants", "factor", "level", "trap")
+    lines = lines[(lines["preset"] == DEFAULT) & (lines["factor"] == OWN_STEPS)]
+    found = lines.set_index(["engine", "level"]).to_dict("index")
+    rows = [
+        [
+            title,
+            *(_error(found[key]) if (key := (name, level)) in found else "–" for level in LEVELS),
+        ]
+        for name, title in TITLES.items()
+    ]
+    return ["engine", f"after {REST_S:g} s at rest", "shaken at once"], rows
 
 
 def _prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:

@@ -12,6 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
+from engines.declaration import REST_S
 from engines.scene import free_rocking_window
 from engines.troubles import TROUBLES
 from studies.cases.refusal import BadInputError
@@ -125,7 +126,7 @@ def pages(root: Path) -> dict[Path, str]:
         "chapters": {title: parts for title, parts in chapters.items() if parts},
         **{"made": facts.made(published), "presets": facts.presets(published)},
         **{"OUTDATED": OUTDATED, "STEPPED": STEPPED, "TROUBLES": TROUBLES},
-        **{"WORDS": WORDS, "MEANINGS": MEANINGS},
+        **{"WORDS": WORDS, "MEANINGS": MEANINGS, "REST_S": REST_S},
     }
     return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {
         root / path: environment.get_template(name).render() for path, name in PAGES.items()

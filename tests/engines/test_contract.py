@@ -59,6 +59,7 @@ def test_a_library_that_is_missing_is_a_row_that_says_how_to_install_it(name):
             {"system": SlidingBlock(**SIZE, friction=0.2), "preset": "landing"},
             "nothing rocks here",
         ),
+        ({}, {"rest_s": 0.2, "preset": "landing"}, "only equal steps can begin before"),
     ],
 )
 def test_what_an_engine_cannot_do_is_a_row_that_says_so(change, asked, named):
@@ -74,6 +75,8 @@ def test_what_an_engine_cannot_do_is_a_row_that_says_so(change, asked, named):
         ({"density": -1.0}, r"density is -1\.0; it must be positive"),
         ({"step": 0.0}, r"step is 0\.0; it must be positive"),
         ({"duration": 0.1}, r"duration is 0\.1; it must be at least the motion's"),
+        ({"rest_s": -0.1}, r"rest_s is -0\.1; it must be 0 where"),
+        ({"rest_s": 0.2, "start": (0.1, 0.0)}, r"rest_s is 0\.2; it must be 0 where"),
         ({"times": [1.0, 0.5]}, "they must increase"),
         ({"friction": -0.1}, r"friction is -0\.1; it must not be negative"),
         ({"motion": pulse(1.3, 1.0, 10**6 + 1)}, "half_cycles is 1000001; it must be at most 1000"),
