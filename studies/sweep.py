@@ -77,10 +77,13 @@ def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
         return pd.DataFrame()
     found = pd.concat(groups, ignore_index=True)
     errors = {name: found[f"{name}_error"] for name in ("median", "p90", "max")}
+    errors["share"] = found["median_difference"]
     named = found["source"].map(engine_of)
     found = found.assign(engine=named, right=found["agree"], **errors)
     found["ms"] = 1e3 * found["wall_s"] / found["cases"]
-    return found[["preset", "engine", "source", "right", *KINDS, "cases", *errors, "ms"]]
+    return found[
+        ["preset", "engine", "source", "right", *KINDS, "cases", "survivors", *errors, "ms"]
+    ]
 
 
 def finding(tables: Tables) -> str:

@@ -129,16 +129,18 @@ def summarize(compared: pd.DataFrame) -> pd.DataFrame:
 
 
 def _line(group: pd.DataFrame) -> dict[str, Any]:
-    errors = group["error"].abs().dropna()
+    errors, differences = group["error"].abs().dropna(), group["difference"].abs()
     return {
         "cases": len(group),
         "agree": int(group["agrees"].sum()),
         **counted(wrong_in(group)),
+        "survivors": len(errors),
         "median_error": errors.median(),
         "p90_error": errors.quantile(0.9),
         "max_error": errors.max(),
         "max_error_over_kappa": (errors / sensitivity_of(group)).max(),
-        "max_difference": group["difference"].abs().max(),
+        "median_difference": differences.median(),
+        "max_difference": differences.max(),
         "false_overturnings": int(group["false_overturning"].sum()),
         "missed_overturnings": int(group["missed_overturning"].sum()),
         "wall_s": group["wall_s"].sum(),

@@ -12,6 +12,7 @@ import pandas as pd
 
 from engines import ENGINES
 from engines.declaration import (
+    AT_REST,
     BEST,
     DEFAULT,
     LEFT_OUT,
@@ -55,17 +56,18 @@ def models(published: Path) -> dict[str, Line]:
 
 
 def in_scenes(published: Path) -> Table:
-    """Return a row for each engine: errors and times with its first and its best preset."""
+    """Return rows for each engine: as documented, so on a base at rest, and its best preset."""
     block = presets(published).rename(columns={"median": "error", "ms": "time"})
     frame = table_in(published / "scenes", "frame-summary").rename(
-        columns={"median_error": "error", "ms_a_frame": "time"}
+        columns={"median_error": "error", "median_difference": "share", "ms_a_frame": "time"}
     )
-    heads, rows = ["engine", "settings", "block", "run time", "frame", "run time"], []
+    heads = ["engine", "settings", "block: wrong", "error", "of θcr", "run time"]
+    heads, rows = [*heads, "frame: wrong", "error", "of θcr", "run time"], []
     block = block.assign(wrong=block[list(KINDS)].sum(axis=1))
     for name in dict.fromkeys(block["engine"]):
         mine = [known[known["source"].map(engine_of) == name] for known in (block, frame)]
         order = in_order(mine[0]["source"].map(preset_of))
-        for preset in dict.fromkeys((order[0], order[-1])):
+        for preset in [each for each in order if each in (order[0], AT_REST, order[-1])]:
             cells = [cell for known in mine for cell in _outcomes(known, preset)]
             first = f"**{TITLES.get(name, name)}**" if preset == order[0] else ""
             rows.append([first, look_of(preset).short, *cells])
@@ -74,9 +76,20 @@ def in_scenes(published: Path) -> Table:
 
 def _outcomes(lines: pd.DataFrame, preset: str) -> list[str]:
     for line in lines[lines["source"].map(preset_of) == preset].to_dict("records"):
-        wrong = f", {line['wrong']:.0f} wrong" if line["wrong"] else ""
-        return [f"{part(line['error'])}{wrong}", duration(1e-3 * line["time"])]
-    return ["–", "–"]
+        size = [part(line[name]) for name in ("error", "share")]
+        return [
+            f"{line['wrong']:.0f}" if line["wrong"] else "",
+            *size,
+            duration(line["time"] / 1e3),
+        ]
+    return ["–"] * 4
+
+
+def compared(published: Path) -> dict[str, int]:
+    """Return how many of the paper's blocks survive, by the exact solution, and turn by little."""
+    rows = table_in(published / "sweep", "sweep")
+    peaks = rows.loc[(rows["source"] == "exact") & (rows["outcome"] == "rocked"), "peak_ratio"]
+    return {"survive": len(peaks), "little": int((peaks < 0.05).sum())}
 
 
 def in_scene(published: Path, name: str) -> Table:
