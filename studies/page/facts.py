@@ -58,7 +58,7 @@ def models(published: Path) -> dict[str, Line]:
 def in_scenes(published: Path) -> Table:
     """Return rows for each engine: as documented, so on a base at rest, and its best preset."""
     block = presets(published).rename(columns={"median": "error", "ms": "time"})
-    frame = table_in(published / "scenes", "frame-summary").rename(
+    frame = table_in(published / "scenes", "random-frame-summary").rename(
         columns={"median_error": "error", "median_difference": "share", "ms_a_frame": "time"}
     )
     heads = ["engine", "settings", "block: wrong", "error", "of θcr", "run time"]
