@@ -24,8 +24,12 @@ paradox): a solver by impulses finds no force then, and lets the corner through 
 MOST_ITERATIONS = 2**31 - 1
 """What fits into a library's own integer."""
 
-FLOOR_HEIGHTS = 100.0
-"""Half of the extent of a base that is a box, in heights of the block and its depths, at least."""
+FLOOR_HEIGHTS = 10.0
+"""Half of the extent of a base that is a box, in heights of the block and its depths, at least.
+
+In single precision it decides contacts: with 100 Rapier's default errs by 16.6 % in the median of
+60 of the paper's cases, and its recommended settings by 6.3 %; with 10 by 15.6 and 3.6 %.
+"""
 
 
 def fall(scene: Scene, dt_s: float) -> float:

@@ -98,7 +98,9 @@ DOCUMENTED = (
 RECOMMENDED = (
     Citation("integrator", "implicitfast", f"{MODELING}, Tuning defaults"),
     Citation("cone", "elliptic, impratio 10", f"{MODELING}, Tuning defaults"),
-    Citation("contact", "solref[0] 0.004 to 0.01 s, at least 2 timesteps", f"{MODELING}, the same"),
+    Citation(
+        "contact, weld", "solref[0] 0.004 to 0.01 s, at least 2 timesteps", f"{MODELING}, the same"
+    ),
     Citation("solver", "Newton, tolerance 1e-10", f"{MODELING}, the same"),
 )
 """What it recommends for rigid contact in place of its defaults, which it does not."""

@@ -69,9 +69,9 @@ class MujocoSettings:
     soft_surface: depth over g dt^2 within which a contact grows from the first of the impedances to
         the second, in place of their width; it keeps contacts that close together from parting. Of
         bodies that rest on others it is over g dt^2 sin(alpha)^2, and softens the first one, too.
-    solref: the contact in the library's other form, in place of damping and stiffness: its time
-        constant over the ordinary step and its damping ratio, both positive: the library takes a
-        pair with one zero for its own default, and goes on.
+    solref: the contact, and the weld of a moving base, in the library's other form, in place of
+        damping and stiffness: its time constant over the ordinary step and its damping ratio, both
+        positive: the library takes a pair with one zero for its own default, and goes on.
     floor: how a base that moves is moved: by a "weld" to a body that is, by its "surfacevel", or by
         "position" alone.
     by_phase, reflection, preload: use `stiffness` at rest alone; give the velocity of the corner
@@ -153,7 +153,7 @@ def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
     held, reference = f'friction="{s.friction} 0.005 0.0001"', ""
     if s.solref is not None:
         reference = f'solref="{_row((s.solref[0] * dt_s, s.solref[1]))}"'
-    base, floor, weld = _base(scene, s, f"{held} {reference}")
+    base, floor, weld = _base(scene, s, held, reference)
     shapes = f'{held} margin="{margin}" {reference}'
     bodies = "".join(_body(scene, number, s, shapes) for number in range(len(scene.bodies)))
     pairs = meshes = ""
@@ -176,8 +176,9 @@ def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
     )
 
 
-def _base(scene: Scene, s: MujocoSettings, held: str) -> tuple[str, str, str]:
+def _base(scene: Scene, s: MujocoSettings, held: str, reference: str) -> tuple[str, str, str]:
     """Return the base; or what leads it, the base, whose joint comes last, and the weld of both."""
+    held += f" {reference}"
     if scene.frame != "world":
         return f'<geom name="base" type="plane" size="1 1 1" {held}/>', "", ""
     at = f'pos="0 0 {-scene.bodies[0].height}"'
@@ -190,7 +191,7 @@ def _base(scene: Scene, s: MujocoSettings, held: str) -> tuple[str, str, str]:
     return (
         f'<body name="guide" mocap="true" {at}/>',
         f'<body name="floor" {at}><freejoint/>{box} mass="{mass}" {held}/></body>',
-        '<equality><weld body1="guide" body2="floor"/></equality>',
+        f'<equality><weld body1="guide" body2="floor" {reference}/></equality>',
     )
 
 
