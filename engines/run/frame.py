@@ -30,7 +30,7 @@ class Spread:
     columns : how many there are, and the number of the beam's row; 0 where there is no beam
     homes, level : where the beam's centre is while a column's is at 0 [m]
     parting : largest difference of two columns' rotations until one passes alpha [rad]
-    tilt : largest rotation of the beam [rad]
+    peak, tilt : largest rotations until now of the columns and of the beam [rad]
     drift, slide : how far it slid along the tops [m] at most, at all and until one passes alpha
     """
 
@@ -38,6 +38,7 @@ class Spread:
     homes: float = 0.0
     level: float = 0.0
     parting: float = 0.0
+    peak: float = 0.0
     tilt: float = 0.0
     drift: float = 0.0
     slide: float = 0.0
@@ -52,7 +53,11 @@ def begin_spread(layout: Layout) -> Spread:
 
 
 def see_spread(spread: Spread, watch: Watch, state: FloatArray) -> None:
-    """Take in a state (bodies, 4), a `Pose` a row; what comes apart is a problem of the watch."""
+    """Take in a state (bodies, 4), a `Pose` a row; what comes apart is a problem of the watch.
+
+    It is one where a column turns further than all did before: a frame that comes apart when its
+    peak is over has that peak.
+    """
     columns = spread.columns
     if columns == 0:
         return
@@ -63,17 +68,20 @@ def see_spread(spread: Spread, watch: Watch, state: FloatArray) -> None:
     # a corner on top of a column moves twice as far as the column's centre
     slid = state[columns][0] - 2.0 * state[0][0] - spread.homes
     spread.drift = max(spread.drift, abs(slid))
-    if max(most, -least) <= watch.alpha:
+    turned = max(most, -least)
+    if turned <= watch.alpha:
         spread.slide = max(spread.slide, abs(slid))
         spread.parting = max(spread.parting, most - least)
-        raised = state[columns][1] - 2.0 * state[0][1] - spread.level
-        come_apart(spread, watch, raised)
+        watch.beam_slide = spread.slide
+        if turned > spread.peak:
+            spread.peak = turned
+            raised = state[columns][1] - 2.0 * state[0][1] - spread.level
+            come_apart(spread, watch, raised)
 
 
 def come_apart(spread: Spread, watch: Watch, raised: float) -> None:
     """See whether the frame is one no longer, its beam so far above the columns' tops [m]."""
     width = 2.0 * watch.half_width
-    watch.beam_slide = spread.slide
     if spread.parting > PARTED_PART * watch.alpha:
         watch.problem, watch.far = PARTED, spread.parting / watch.alpha
     elif raised > THROWN_WIDTHS * width:
