@@ -313,13 +313,16 @@ def _of_floors(rows: pd.DataFrame) -> Row:
 
 def finding(tables: Tables) -> str:
     """Say how far off the engines are on random cases with their best presets, and who throws."""
-    nothing = pd.DataFrame()
-    drawn = {it: tables.get(f"random-{it}-summary", nothing) for it in ("frame", "slide")}
+    chosen = tables["frame-summary"].rename(columns={"largest_error": "max_error"})
+    drawn = {
+        "frame": tables.get("random-frame-summary", chosen),
+        "slide": tables.get("random-slide-summary", pd.DataFrame()),
+    }
     frames, boxes = map(_best, drawn.values())
     claims = []
     if len(frames):
         most = part(frames["max_error"].max())
-        claims.append(f"the largest rotation of a random frame by up to {most}")
+        claims.append(f"the largest rotation of a frame by up to {most}")
     if len(boxes):
         claims.append(f"a slip of a random block by up to {part(boxes['max_error'].max())}")
     if not claims:

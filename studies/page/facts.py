@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -29,7 +29,7 @@ from studies.kit.say import capital, duration, listed, part
 from studies.kit.store import engines_of, provenance_of, whole_runs
 from studies.kit.tables import table_in
 from studies.measures.costs import cost_text
-from studies.measures.presets import engine_of, in_order, look_of, preset_of
+from studies.measures.presets import in_order, look_of
 from studies.measures.wrongness import KINDS
 from studies.sweep import over_all, preset_table
 
@@ -55,34 +55,20 @@ def models(published: Path) -> dict[str, Line]:
     return {str(line["source"]): line for line in lines.to_dict("records")}
 
 
-def in_scenes(published: Path) -> Table:
+def by_engine(published: Path) -> Table:
     """Return rows for each engine: as documented, so on a base at rest, and its best preset."""
-    block = presets(published).rename(columns={"median": "error", "ms": "time"})
-    frame = table_in(published / "scenes", "random-frame-summary").rename(
-        columns={"median_error": "error", "median_difference": "share", "ms_a_frame": "time"}
-    )
-    heads = ["engine", "settings", "block: wrong", "error", "of θcr", "run time"]
-    heads, rows = [*heads, "frame: wrong", "error", "of θcr", "run time"], []
-    block = block.assign(wrong=block[list(KINDS)].sum(axis=1))
-    for name in dict.fromkeys(block["engine"]):
-        mine = [known[known["source"].map(engine_of) == name] for known in (block, frame)]
-        order = in_order(mine[0]["source"].map(preset_of))
-        for preset in [each for each in order if each in (order[0], AT_REST, order[-1])]:
-            cells = [cell for known in mine for cell in _outcomes(known, preset)]
-            first = f"**{TITLES.get(name, name)}**" if preset == order[0] else ""
-            rows.append([first, look_of(preset).short, *cells])
-    return heads, rows
-
-
-def _outcomes(lines: pd.DataFrame, preset: str) -> list[str]:
-    for line in lines[lines["source"].map(preset_of) == preset].to_dict("records"):
-        size = [part(line[name]) for name in ("error", "share")]
-        return [
-            f"{line['wrong']:.0f}" if line["wrong"] else "",
-            *size,
-            duration(line["time"] / 1e3),
-        ]
-    return ["–"] * 4
+    rows = []
+    for name, lines in presets(published).groupby("engine", sort=False):
+        order = in_order(lines["preset"])
+        for line in lines.set_index("preset").loc[order].reset_index().to_dict("records"):
+            if line["preset"] in (order[0], AT_REST, order[-1]):
+                wrong = str(sum(line[kind] for kind in KINDS) or "")
+                cells = [part(line["median"]), part(line["share"]), duration(line["ms"] / 1e3)]
+                rows.append(
+                    [f"**{TITLES[str(name)]}**", look_of(line["preset"]).short, wrong, *cells]
+                )
+    heads = ["engine", "settings", "wrong outcomes", "error", "share of θcr", "run time"]
+    return heads, once(rows)
 
 
 def compared(published: Path) -> dict[str, int]:
@@ -154,7 +140,7 @@ def lasts(*records: Mapping[str, Any]) -> str:
     return f"{first} the first time, when its functions are compiled, and for {later} later"
 
 
-def once(rows: Iterator[Sequence[str]]) -> list[list[str]]:
+def once(rows: Iterable[Sequence[str]]) -> list[list[str]]:
     """Return rows whose first cell is left empty where it is that of the row before."""
     found: list[list[str]] = []
     before = ""
