@@ -27,12 +27,11 @@ class Miss(Enum):
 MISSED = {
     Miss.MIRROR: (
         *("pymunk:default", "pymunk:default-at-rest", "pymunk:recommended"),
-        *("box2d:default", "box2d:default-at-rest", "drake:default"),
+        *("box2d:default", "box2d:default-at-rest", "box2d:recommended"),
         *("rapier:default", "rapier:default-at-rest", "rapier:recommended"),
-        *("physx:default", "physx:default-at-rest"),
+        *("physx:default", "physx:default-at-rest", "drake:default"),
     ),
     Miss.PEAK: (
-        *("mujoco:recommended", "pymunk:default-at-rest", "drake:default-at-rest"),
         *("box2d:default", "box2d:default-at-rest", "box2d:recommended", "rapier:default"),
     ),
     Miss.RECORD: (*("pymunk:default-at-rest", "box2d:default-at-rest", "rapier:default-at-rest"),),
