@@ -44,7 +44,7 @@ def test_the_library_s_own_presets_rest_and_no_other(engine, preset):
 @pytest.mark.parametrize("frame", ["base", "world"])
 @pytest.mark.parametrize("moment", Moment)
 def test_steps_are_those_of_a_motion_that_begins_later(moment, frame):
-    """Three of them last longer than the rest, and add up to a rounding; a cosine starts at once."""
+    """Three of them, whose sum is no round number, last longer; a cosine starts at once."""
     motion, dt_s = replace(pulse(1.3, 3.0), phase=1.5), 0.36 * REST_S
     steps = []
     for shaken, rest_s in ((motion, REST_S), (Delayed(motion, 3.0 * dt_s), 0.0)):
