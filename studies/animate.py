@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from importlib.util import find_spec
-from pathlib import Path
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from analytic.response import Outcome
 from analytic.slide import SlidingBlock
 from studies.cases.refusal import BadInputError
 from studies.compare.rows import measure
-from studies.kit.arguments import Place, Sources, check_writable
+from studies.kit.arguments import Place, Sources, check_file
 from studies.kit.cluster import place_of
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.options import Computing, Yours
@@ -47,7 +46,10 @@ def command(
     """
     if standing.scene == "slide" and sources == DEFAULT_SOURCES:  # it has no linearization
         sources = tuple(name for name in sources if name != "housner")
-    check_film(out)
+    check_file("--out", out, ".gif", ".mp4")
+    if out.suffix == ".mp4" and find_spec("imageio_ffmpeg") is None:
+        words = "that needs the extra [video]: pip install imageio-ffmpeg"
+        raise BadInputError(f"--out is an .mp4; {words}")
     if len(sources) > MOST_SOURCES:
         raise BadInputError(f"--sources are {len(sources)}; they must be at most {MOST_SOURCES}")
     system = standing.system(width, height, yours.friction)
@@ -66,16 +68,6 @@ def command(
         write_film(out, system, motion, times, usable, FRAMES_A_SECOND)
         print(out)
     return exit_code(rows)
-
-
-def check_film(path: Path) -> None:
-    """Refuse a file to which no film can be written."""
-    if path.suffix not in (".gif", ".mp4"):
-        raise BadInputError(f"--out is {str(path)!r}; it must end in .gif or .mp4")
-    check_writable("--out", path)
-    if path.suffix == ".mp4" and find_spec("imageio_ffmpeg") is None:
-        words = "that needs the extra [video]: pip install imageio-ffmpeg"
-        raise BadInputError(f"--out is an .mp4; {words}")
 
 
 def moved(case: Question, sources: Sequence[str], yours: Yours, place: Where = here) -> list[Row]:

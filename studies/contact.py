@@ -28,7 +28,7 @@ from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables
 from studies.measures.differences import WELL_CONDITIONED, with_reference
-from studies.measures.energy import SAMPLES, growth
+from studies.measures.history import SAMPLES, growth
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
 from studies.sources.registry import resolve
 

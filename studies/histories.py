@@ -18,7 +18,7 @@ from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import capital, out_of
 from studies.kit.study import Figures, Study, Tables
 from studies.measures.claims import claim, table_of
-from studies.measures.samples import samples
+from studies.measures.history import samples
 
 LINEAR = ("exact", "housner", "modified")
 DRAWN = {2: ("exact", "rk4", "average-acceleration"), 4: LINEAR, 5: LINEAR}

@@ -25,13 +25,12 @@ from studies.kit.study import Figures, Study, Tables
 from studies.measures.costs import (
     EXACT,
     best_of,
-    best_of_each,
     cheapest_below,
     exact_cost,
     joint,
-    method_title,
+    parts_of,
 )
-from studies.measures.presets import engine_of, uses_of
+from studies.measures.presets import engine_of, look_of, uses_of
 from studies.measures.published import TARGETS
 from studies.measures.wrongness import REST, kind_of
 from studies.sources.registry import core_sources
@@ -151,7 +150,7 @@ def along(job: Job) -> Row:
         # by the same clock for all sources, of which only engines know their own
         return replace(response, setup_s=time.perf_counter() - start - response.wall_s)
 
-    best, runs = best_of(timed, job.labels["budget_s"])
+    ((best, runs),) = best_of([timed], job.labels["budget_s"])
     found, error = whole, math.nan
     if best.outcome is Outcome.FAILED:
         found = best
@@ -201,7 +200,7 @@ def put_back(job: Job) -> Row:
     source, case = f"{job.source}:{preset}" if preset else job.source, replace(job.case, **observed)
     posed = replace(job, case=case, source=source, options=options)
     asked = [partial(ask, posed), partial(ask, job)]
-    (found, runs), (plain, _) = best_of_each(asked, job.labels["budget_s"])
+    (found, runs), (plain, _) = best_of(asked, job.labels["budget_s"])
     exact = simulate(CASE.block, CASE.motion).peak_ratio
     return {
         **summary(found),
@@ -288,10 +287,12 @@ def finding(tables: Tables) -> str:
     if (found := cheapest(table)) is None:
         return f"No setting of an engine predicts every typical peak within {part(TARGETS[0])}."
     target, best, cases = found
+    engine, preset, _ = parts_of(best["method"])  # one along its steps
+    method = f"{ENGINES[engine].title}, {look_of(preset).short}"
     exact = exact_cost(table if cases == ALL else table[table["set"] == TYPICAL])
     over = f", {best['wall_s'] / exact:.3g} times as long as the exact solution takes"
     return (
-        f"{method_title(best['method'])}, predicts every {'typical ' * (cases == TYPICAL)}peak "
+        f"{method}, predicts every {'typical ' * (cases == TYPICAL)}peak "
         f"within {part(target)} in {duration(best['wall_s'])} a case{over if exact > 0.0 else ''}."
     )
 

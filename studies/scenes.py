@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from functools import cache
 from itertools import islice, product
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
@@ -21,13 +21,10 @@ from engines.run.run import LAG
 from studies.cases.drawn import calm_frames, slides
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import listed, part
-from studies.kit.study import Study, Tables
+from studies.kit.study import Figures, Study, Tables
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of
 from studies.measures.wrongness import FALL, NO_ANSWER, WORDS, kind_of
 from studies.sources.registry import Source, core_sources, resolve
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
 """Amplitude [g] and circular frequency [rad/s] of full sines."""
@@ -43,23 +40,24 @@ SEEN = {
     "slide": ("place_m", "lift_m", "flat_m", "turn_rad"),
     "floor": (LAG,),
 }
-SEEN |= {f"random-{scene}": SEEN[scene] for scene in ("frame", "slide")}
 """What an engine shows of a scene besides."""
+RANDOM = "random-"
+"""How the name of a scene begins whose cases are drawn."""
 DRAWN = ("aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p")
 LABELS = {
     "frame": ("columns", "load", "amplitude_g", "omega", "phase"),
-    "random-frame": ("columns", "load", *DRAWN),
+    f"{RANDOM}frame": ("columns", "load", *DRAWN),
     "slide": ("case",),
-    "random-slide": ("friction", *DRAWN),
+    f"{RANDOM}slide": ("friction", *DRAWN),
     "floor": ("floor", "rest_s"),
 }
+"""Columns of a scene's table before source ..."""
 MEASURED = {
     "frame": ("exact", "right", "error"),
-    "slide": ("slips", "exact_slips", "slip_error_m", "verdict"),
+    "slide": ("slips", "exact_slips", "slip_error_m", "verdict", "slip_error"),
     "floor": ("carried",),
 }
-MEASURED |= {"random-frame": MEASURED["frame"], "random-slide": (*MEASURED["slide"], "slip_error")}
-"""Scene -> the columns of its table before source, and after what all have."""
+"""... and after what all have; drawn cases have those of their scene."""
 TYPES = {
     **dict.fromkeys(("columns", "phase", "half_cycles", "slips", "exact_slips"), int),
     "right": bool,
@@ -160,7 +158,7 @@ def _drawn(sources: Sequence[Source], cases: int) -> Iterator[Job]:
             sizes = system.height / system.width, system.width
             drawn = dict(zip(DRAWN, (*sizes, *pulse), strict=True))
             case = Question(system=system, motion=motion)
-            yield _job(f"random-{scene}", labels | drawn, case, source)
+            yield _job(RANDOM + scene, labels | drawn, case, source)
 
 
 @cache  # one for all sources
@@ -175,7 +173,7 @@ def measure(job: Job) -> Row:
     Errors of peaks are relative, those of slips and places in metres, and nan where there is none.
     """
     response, case = ask(job), job.case
-    scene = str(job.labels["scene"]).removeprefix("random-")
+    scene = str(job.labels["scene"]).removeprefix(RANDOM)
     exact = exact_of(case)
     row = {**summary(response), "reason": response.reason.name if response.reason else ""}
     seen = {name: _seen(response, name) for name in SEEN[scene]}
@@ -225,20 +223,17 @@ def _slip_error(response: Response, exact: Response) -> float:
 
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows of each scene, and a line for each source that is built for it."""
-    parts = {}
-    for scene, labels in LABELS.items():
+    tables = {}
+    for name, labels in LABELS.items():
+        scene = name.removeprefix(RANDOM)
         columns = ["scene", *labels, "source", *SHARED, *MEASURED[scene], *SEEN[scene]]
-        mine = rows[rows["scene"] == scene].reindex(columns=columns)
-        parts[scene] = mine.astype({name: TYPES[name] for name in columns if name in TYPES})
-    lines = {"frame": _of_frames, "random-frame": _of_random_frames}
-    lines |= {"slide": _of_slides, "random-slide": _of_random_slides}
-    floors = _lines(parts["floor"], _of_floors, "floor")
-    of_floors = ["engine", "floor", "carried", "carried_after_rest", LAG]
-    return {
-        **parts,
-        **{f"{scene}-summary": _lines(built(parts[scene]), line) for scene, line in lines.items()},
-        "floor-summary": floors.reindex(columns=of_floors),
-    }
+        mine = rows[rows["scene"] == name].reindex(columns=columns)
+        mine = tables[name] = mine.astype({it: TYPES[it] for it in columns if it in TYPES})
+        keys = ["source", "floor"] if scene == "floor" else ["source"]
+        groups = built(mine).groupby(keys, sort=False)
+        lines = [dict(zip(keys, key, strict=True)) | SUMMED[scene](of) for key, of in groups]
+        tables[f"{name}-summary"] = pd.DataFrame(lines)
+    return tables
 
 
 def built(rows: pd.DataFrame) -> pd.DataFrame:
@@ -246,36 +241,16 @@ def built(rows: pd.DataFrame) -> pd.DataFrame:
     return rows[rows["reason"] != Reason.UNAVAILABLE.name]
 
 
-def _lines(rows: pd.DataFrame, line: Callable[[pd.DataFrame], Row], *labels: str) -> pd.DataFrame:
-    """Return a line for each source, or for each of its rows that have some labels alike."""
-    keys = ["source", *labels]
-    groups = rows.groupby(keys, sort=False)
-    return pd.DataFrame(
-        [{**dict(zip(keys, key, strict=True)), **line(group)} for key, group in groups]
-    )
-
-
 def _of_frames(rows: pd.DataFrame) -> Row:
     size = rows["error"].abs()
     return {
-        **_wrong_frames(rows),
-        **{"median_error": size.median(), "largest_error": size.max()},
-        "beyond_2_percent": int((size > 0.02).sum()),
-        **{name: rows[name].max() for name in SEEN["frame"]},
+        "frames": len(rows),
+        "wrong": int((~rows["right"]).sum()),
+        "parted": int((rows["reason"] == Reason.PARTED.name).sum()),
+        **_quantiles("error", size),
+        **_quantiles("difference", size * rows["exact"]),
         "ms_a_frame": 1e3 * rows["wall_s"].mean(),
     }
-
-
-def _wrong_frames(rows: pd.DataFrame) -> Row:
-    parted = rows["reason"] == Reason.PARTED.name
-    wrong = int((~rows["right"]).sum())
-    return {"frames": len(rows), "wrong": wrong, "parted": int(parted.sum())}
-
-
-def _of_random_frames(rows: pd.DataFrame) -> Row:
-    size = rows["error"].abs()
-    parts = {**_quantiles("error", size), **_quantiles("difference", size * rows["exact"])}
-    return {**_wrong_frames(rows), **parts, "ms_a_frame": 1e3 * rows["wall_s"].mean()}
 
 
 def _quantiles(name: str, size: pd.Series[float]) -> Row:
@@ -283,19 +258,16 @@ def _quantiles(name: str, size: pd.Series[float]) -> Row:
     return {f"{word}_{name}": size.quantile(level) for word, level in levels.items()}
 
 
-def _of_random_slides(rows: pd.DataFrame) -> Row:
-    line = _of_slides(rows) | _quantiles("error", rows["slip_error"])
-    return {name: value for name, value in line.items() if name != "creep_m"}
-
-
 def _of_slides(rows: pd.DataFrame) -> Row:
-    slides, held = rows["exact_slips"] > 0, rows["exact_slips"] == 0
+    held = rows["exact_slips"] == 0
+    crept = {"creep_m": rows.loc[held, "slip_error_m"].max()} if held.any() else {}
     return {
         "slides": len(rows),
         "wrong": int((rows["verdict"] != RIGHT).sum()),
         "thrown_off": int((rows["verdict"] == THROWN_OFF).sum()),
-        "largest_slip_error_m": rows.loc[slides, "slip_error_m"].max(),
-        "creep_m": rows.loc[held, "slip_error_m"].max(),
+        **_quantiles("error", rows["slip_error"]),
+        "largest_slip_error_m": rows.loc[~held, "slip_error_m"].max(),
+        **crept,
         "lift_m": rows["lift_m"].max(),
         "ms_a_slide": 1e3 * rows["wall_s"].mean(),
     }
@@ -304,41 +276,31 @@ def _of_slides(rows: pd.DataFrame) -> Row:
 def _of_floors(rows: pd.DataFrame) -> Row:
     rested = rows["rest_s"] > 0.0
     return {
-        "engine": engine_of(str(rows["source"].iloc[0])),
         "carried": rows.loc[~rested, "carried"].max(),
         "carried_after_rest": rows.loc[rested, "carried"].max(),
         LAG: rows[LAG].max(),
     }
 
 
+SUMMED = {"frame": _of_frames, "slide": _of_slides, "floor": _of_floors}
+"""Scene -> what makes a line of its rows."""
+
+
 def finding(tables: Tables) -> str:
     """Say how far off the engines are on random cases with their best presets, and who throws."""
-    chosen = tables["frame-summary"].rename(columns={"largest_error": "max_error"})
-    drawn = {
-        "frame": tables.get("random-frame-summary", chosen),
-        "slide": tables.get("random-slide-summary", pd.DataFrame()),
-    }
-    frames, boxes = map(_best, drawn.values())
-    claims = []
-    if len(frames):
-        most = part(frames["max_error"].max())
-        claims.append(f"the largest rotation of a frame by up to {most}")
-    if len(boxes):
-        claims.append(f"a slip of a random block by up to {part(boxes['max_error'].max())}")
-    if not claims:
+    frames, boxes = (_best(tables[f"{RANDOM}{scene}-summary"]) for scene in ("frame", "slide"))
+    known = {"the largest rotation of a frame": frames, "a slip of a random block": boxes}
+    best = {what: lines for what, lines in known.items() if len(lines)}
+    if not best:
         return "No engine that was asked is built for these scenes."
-    wrong = sum(int(lines["wrong"].sum()) for lines in (frames, boxes) if len(lines))
+    off = [f"{what} by up to {part(lines['max_error'].max())}" for what, lines in best.items()]
+    wrong = sum(int(lines["wrong"].sum()) for lines in best.values())
     beside = f", and predict {wrong} outcomes wrong" if wrong else ""
-    said = f"The engines, each with its best preset, miss {listed(claims)}{beside}."
-    return " ".join([said, *_thrown(tables["slide-summary"], drawn["slide"])])
-
-
-def _thrown(*tables: pd.DataFrame) -> Iterator[str]:
-    """Yield a sentence on the sources that do not keep a slide flat, if there are any."""
-    lines = pd.concat(tables).reindex(columns=["source", "thrown_off"])
-    thrown = lines.query("thrown_off > 0")["source"].unique()
-    if len(thrown):
-        yield f"A block that slides is thrown off the base by {listed(thrown)}."
+    every = pd.concat([tables["slide-summary"], tables[f"{RANDOM}slide-summary"]])
+    thrown = every.reindex(columns=["source", "thrown_off"]).query("thrown_off > 0")["source"]
+    lost = f" A block that slides is thrown off the base by {listed(thrown.unique())}."
+    said = f"The engines, each with its best preset, miss {listed(off)}{beside}."
+    return said + lost * (len(thrown) > 0)
 
 
 def _best(lines: pd.DataFrame) -> pd.DataFrame:
@@ -351,20 +313,18 @@ def _best(lines: pd.DataFrame) -> pd.DataFrame:
     return lines.loc[places.groupby(lines["source"].map(engine_of), sort=False).idxmax()]
 
 
-def shown(tables: Tables) -> Mapping[str, pd.DataFrame]:
+def shown(tables: Tables) -> Tables:
     """Return the line of each source and scene."""
     return {
-        "Rocking frames": tables["frame-summary"],
-        "Random frames: errors of the peak, and as differences over θcr": tables[
-            "random-frame-summary"
-        ],
+        "Rocking frames: errors of the peak, and as differences over θcr": tables["frame-summary"],
+        "Random frames": tables[f"{RANDOM}frame-summary"],
         "Sliding blocks": tables["slide-summary"],
-        "Random slides": tables["random-slide-summary"],
+        "Random slides": tables[f"{RANDOM}slide-summary"],
         "How much of a floor's way it carries a block": tables["floor-summary"],
     }
 
 
-def figures(tables: Tables) -> Mapping[str, Figure]:
+def figures(tables: Tables) -> Figures:
     """Draw errors against run times, and what floors carry."""
     from studies.drawing.scenes import draw_floors, draw_times
 

@@ -16,7 +16,7 @@ from studies.cases.extreme import Extreme, extremes
 from studies.kit.jobs import Job, Question, Row, ask, summary, unanswered
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables
-from studies.measures.energy import SAMPLES
+from studies.measures.history import SAMPLES
 from studies.measures.presets import in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, ENERGY_BAND, Verdict, judge, reference
 from studies.measures.wrongness import kind_of

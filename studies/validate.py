@@ -22,11 +22,7 @@ from studies.kit.jobs import Job, Question, Row
 from studies.kit.options import EffortOptions, Yours
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables
-from studies.measures.differences import (
-    WELL_CONDITIONED,
-    sensitivity_of,
-    with_reference,
-)
+from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
 from studies.measures.halving import (
     BOUNDED,
     CALIBRATE,
@@ -97,7 +93,8 @@ def _job(labels: Row, case: RandomCase, source: str, settings: Row) -> Job:
 def _with_halves(sources: Sequence[str], cases: int, tests: int, options: Options) -> list[Job]:
     found = []
     for use, seed, count in ((TEST, options.seed, tests), (CALIBRATE, options.seed + 1, cases)):
-        rocked = filter(_rocks, draw(seed, options.scene))
+        drawn = draw(seed, options.scene)
+        rocked = (it for it in drawn if simulate(it.block, it.motion).outcome is Outcome.ROCKED)
         for number, case in enumerate(islice(rocked, count)):
             for source, settings in options.settings(sources, case.block).items():
                 job = _job({"set": use}, replace(case, case=number), source, settings)
@@ -107,10 +104,6 @@ def _with_halves(sources: Sequence[str], cases: int, tests: int, options: Option
                 pair = enumerate((job, finer))
                 found += [replace(each, labels={**job.labels, "half": half}) for half, each in pair]
     return found
-
-
-def _rocks(case: RandomCase) -> bool:
-    return simulate(case.block, case.motion).outcome is Outcome.ROCKED
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:

@@ -18,7 +18,7 @@ from studies.cases.refusal import BadInputError
 from studies.cases.variants import variants
 from studies.kit.say import WIDTH, out_of
 from studies.kit.tables import read_table
-from studies.measures.published import PUBLISHED, meaning_of
+from studies.measures.published import PUBLISHED, columns
 from studies.sources.registry import scene_of
 
 VARIANTS, OWN = TABLES = "contact/variants.csv", "contact/own-steps.csv"
@@ -115,7 +115,8 @@ def shown(lines: pd.DataFrame) -> Mapping[str, pd.DataFrame]:
     for symptom, group in lines.groupby("symptom", sort=False):
         line = group.iloc[0]
         fails = "; inf: cases fail" if (group["before"] == math.inf).any() else ""
-        title = f"{symptom} ({meaning_of(line['measure'])}{fails}; asked in {line['asked_in']})"
+        meaning = columns()["", line["measure"]][-1].partition(";")[0].replace("|", "∣")
+        title = f"{symptom} ({meaning}{fails}; asked in {line['asked_in']})"
         tables[fill(title, WIDTH)] = group[["engine", "setting", *NUMBERS]]
     return tables
 

@@ -22,7 +22,7 @@ from studies.kit.arguments import (
     Place,
     Positive,
     Sources,
-    check_plot,
+    check_file,
     refuse_both,
     refuse_given,
     required,
@@ -89,7 +89,8 @@ def command(
     effort.refuse_idle(sources)
     words = "a block requires its full width and height [m]"
     width, height = required(words, width=width, height=height)
-    check_plot(plot)
+    if plot is not None:
+        check_file("--plot", plot, ".png", ".pdf", ".svg")
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
     window = window_of(system, motion, duration, step=effort.step, dt=yours.dt)
@@ -116,7 +117,7 @@ def draw(case: Question, rows: Sequence[Row], path: Path) -> None:
     """Draw the histories of the rows over each other; nothing where no row has one."""
     from studies.drawing.figures import draw_histories
     from studies.kit.pictures import save
-    from studies.measures.samples import samples
+    from studies.measures.history import samples
 
     system, motion = case.system, case.motion
     labels = {

@@ -8,12 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from engines import ENGINES
 from studies.drawing.facets import error_scale, strip_beyond
 from studies.drawing.labels import Name, around
 from studies.drawing.styles import LOWEST, Style, title_of
 from studies.kit.say import duration
-from studies.measures.costs import EXACT, exact_cost, joint
+from studies.measures.costs import EXACT, exact_cost, joint, parts_of
 from studies.measures.presets import look_of
 
 STYLES = {
@@ -33,18 +32,11 @@ WRONG, EDGE, TOP, ACROSS = 10.0, 3.0, 60.0, 3
 """Where methods that fail or are wrong are drawn, the strip there, and most panels in a row."""
 
 
-def engine_in(method: str) -> tuple[str, str]:
-    """Return the engine of a method and its preset; two empty words for all other methods."""
-    engine, _, preset = method.partition(" ")
-    return (engine, preset) if engine in ENGINES else ("", "")
-
-
 def method_style(method: str) -> Style:
     """Return the style of a method: of an engine that of its preset; grey for what is unknown."""
-    engine, varied = engine_in(method)
+    engine, preset, dial = parts_of(method)
     if not engine:
         return STYLES.get(method, Style("#777777", "-", "."))
-    preset, _, dial = varied.partition(", ")
     colour = look_of(preset).colour
     return Style(colour, ":", "+", 0.9) if dial else Style(colour, "-", "o", 1.6, "full")
 
@@ -65,7 +57,7 @@ def placed(table: pd.DataFrame) -> pd.DataFrame:
 def draw_precision(table: pd.DataFrame) -> Figure:
     """Draw the median error of the peak against the run time of a case; others pale behind."""
     lines = placed(table)
-    engine = lines["method"].map(lambda method: engine_in(method)[0])
+    engine = lines["method"].map(lambda method: parts_of(method)[0])
     names = sorted(engine.unique(), key=bool)  # what is no engine comes first
     first = names.count("")
     across = max(min(len(names) - first, ACROSS), 1)
@@ -117,7 +109,7 @@ def _panel(axes: Axes, mine: pd.DataFrame, others: pd.DataFrame) -> list[Name]:
         lost = line[line["wrong"]]
         broken = {**style.points(4.0), "marker": "x", "markeredgewidth": 1.2}
         axes.plot(lost["wall_s"], [WRONG] * len(lost), **broken)
-        preset, _, dial = engine_in(str(name))[1].partition(", ")
+        _, preset, dial = parts_of(str(name))
         words = dial or (look_of(preset).short if preset else str(name))
         best = line.fillna({"error": WRONG}).sort_values("error").iloc[0]
         names.append(Name(words, best["wall_s"], best["error"], style.colour))

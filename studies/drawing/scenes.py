@@ -23,8 +23,8 @@ def draw_floors(lines: pd.DataFrame) -> Figure:
     ):
         axes.plot(100.0 * lines[column], range(len(lines)), marker, color=colour, label=label,
                   markersize=8, fillstyle=fill)  # fmt: skip
-    pairs = zip(lines["engine"].astype(str), lines["floor"], strict=True)
-    names = [f"{title_of(engine)}: {floor}" for engine, floor in pairs]
+    pairs = zip(lines["source"].astype(str), lines["floor"], strict=True)
+    names = [f"{title_of(source)}: {floor}" for source, floor in pairs]
     axes.set_yticks(range(len(lines)), names)
     axes.set(ylim=(len(lines) - 0.5, -0.5), xlim=(-8.0, 108.0))
     axes.set_xlabel("way over which the floor carries the block, of its own  [%]")
@@ -44,7 +44,7 @@ def draw_times(lines: pd.DataFrame) -> Figure:
     axes.set_ylabel("error of the largest rotation, relative  [–]")
     names = []
     for row in lines.dropna(subset="median_error").to_dict("records"):
-        low, high = (max(row[name], LOWEST) for name in ("median_error", "largest_error"))
+        low, high = (max(row[name], LOWEST) for name in ("median_error", "max_error"))
         colour = look_of(preset_of(row["source"])).colour
         axes.plot([row["ms_a_frame"]] * 2, [low, high], color=colour, linewidth=1.5, alpha=0.5)
         axes.plot(row["ms_a_frame"], low, "o", color=colour, markersize=6)

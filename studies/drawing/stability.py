@@ -15,21 +15,23 @@ from matplotlib.patches import Patch, Rectangle
 from studies.drawing.facets import key, sheet
 from studies.drawing.styles import title_of
 from studies.measures.presets import look_of, preset_of
-from studies.measures.verdicts import SENTENCES, Verdict
+from studies.measures.verdicts import Verdict
+from studies.measures.wrongness import FALL, MEANINGS, NO_ANSWER, REST, WORDS
 
 MARKS = {
-    Verdict.GOOD: ("#B5E0D3", "✓", "#000000", ""),
-    Verdict.UNSEEN: ("#E3F3EE", "·", "#000000", ""),
-    Verdict.COARSE: ("#F7EE8A", "~", "#000000", ""),
-    Verdict.OFF: ("#F2B33D", "≠", "#000000", ""),
-    Verdict.SLIDES: ("#E3B3CE", "→", "#000000", ""),
-    Verdict.ENERGY: ("#56A0D3", "↑", "#000000", ""),
-    Verdict.FALL: ("#D55E00", "✗", "#FFFFFF", ""),
-    Verdict.REST: ("#8B5A3C", "–", "#FFFFFF", ""),
-    Verdict.FAILED: ("#222222", "!", "#FFFFFF", ""),
-    Verdict.INVALID: ("#FFFFFF", "○", "#555555", "////"),
+    Verdict.GOOD: ("#B5E0D3", "✓", "#000000", "", "outcome right, peak within 1 % or 1e-6 θcr"),
+    Verdict.UNSEEN: ("#E3F3EE", "·", "#000000", "", "misses a rocking below 1e-6 θcr"),
+    Verdict.COARSE: ("#F7EE8A", "~", "#000000", "", "peak within 10 %"),
+    Verdict.OFF: ("#F2B33D", "≠", "#000000", "", "peak off by more than 10 %"),
+    Verdict.SLIDES: ("#E3B3CE", "→", "#000000", "", "slides more than 1 % of B"),
+    Verdict.ENERGY: ("#56A0D3", "↑", "#000000", "", "energy grows by more than 1 %"),
+    Verdict.FALL: ("#D55E00", "✗", "#FFFFFF", "", WORDS[FALL]),
+    Verdict.REST: ("#8B5A3C", "–", "#FFFFFF", "", f"{WORDS[REST]} ({MEANINGS[REST]})"),
+    Verdict.FAILED: ("#222222", "!", "#FFFFFF", "", WORDS[NO_ANSWER]),
+    Verdict.INVALID: ("#FFFFFF", "○", "#555555", "////", "the reference is not valid here"),
 }
-"""Verdict -> its cell's colour (Okabe and Ito's palette), symbol, colour of that, hatching."""
+"""Verdict -> its colour (Okabe and Ito's palette), symbol, colour of that, hatching, and what a
+reader sees."""
 ACROSS = 22
 """Methods side by side at most; more stand in a panel below."""
 
@@ -54,8 +56,8 @@ def draw_matrix(rows: pd.DataFrame, title: str) -> Figure:
         axes.set_xlim(0, most)
     drawing.suptitle(fill(title, 75), fontsize=12)
     handles = [
-        Patch(fc=colour, ec="#888888", hatch=hatch, label=f"{symbol}  {SENTENCES[verdict]}")
-        for verdict, (colour, symbol, _, hatch) in MARKS.items()
+        Patch(fc=colour, ec="#888888", hatch=hatch, label=f"{symbol}  {words}")
+        for verdict, (colour, symbol, _, hatch, words) in MARKS.items()
         if verdict.value in set(rows["verdict"])
     ]
     handles.append(Patch(fc="white", ec="#888888", label="    does not apply"))
@@ -70,7 +72,7 @@ def _panel(
     sources, names = [*itertools.chain(*groups.values())], list(cases["case"])
     for row in rows[rows["source"].isin(sources)].to_dict("records"):
         i, j = sources.index(row["source"]), names.index(row["case"])
-        colour, symbol, ink, hatch = MARKS[Verdict(row["verdict"])]
+        colour, symbol, ink, hatch, _ = MARKS[Verdict(row["verdict"])]
         axes.add_patch(Rectangle((i, j), 1, 1, lw=0.0, fc=colour, ec="#cccccc", hatch=hatch))
         axes.add_patch(Rectangle((i, j), 1, 1, fill=False, ec="white", lw=1.2))
         axes.text(i + 0.5, j + 0.52, symbol, ha="center", va="center_baseline", color=ink)

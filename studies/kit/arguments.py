@@ -196,16 +196,11 @@ def _option(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
-def check_plot(path: Path | None) -> None:
-    """Refuse a file to which no figure can be written."""
-    if path is not None and path.suffix not in (".png", ".pdf", ".svg"):
-        raise BadInputError(f"--plot is {str(path)!r}; it must end in .png, .pdf or .svg")
-    if path is not None:
-        check_writable("--plot", path)
-
-
-def check_writable(argument: str, path: Path) -> None:
-    """Refuse a file that cannot be written; one that is there stays, and no new one is left."""
+def check_file(argument: str, path: Path, *ends: str) -> None:
+    """Refuse a file of another ending, or that cannot be written; what is there stays as it is."""
+    if path.suffix not in ends:
+        allowed = f"{', '.join(ends[:-1])} or {ends[-1]}"
+        raise BadInputError(f"{argument} is {str(path)!r}; it must end in {allowed}")
     try:
         if path.exists() and not path.is_file():
             raise OSError(errno.EINVAL, "it is no file")  # a pipe would be waited for

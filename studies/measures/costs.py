@@ -13,7 +13,6 @@ import pandas as pd
 from analytic.response import Response
 from engines import ENGINES
 from studies.kit.say import duration
-from studies.measures.presets import look_of
 
 LEAST_RUNS, LEAST_S = 5, 0.02
 """A time is of the best of so many runs at least, or marked; in that time [s] all gets warm."""
@@ -34,18 +33,11 @@ def enough(times: Sequence[float], spent_s: float, most_s: float) -> bool:
     return next_shortest <= 1.02 * shortest  # a minimum that came twice is no accident
 
 
-def best_of(action: Callable[[], Response], most_s: float) -> tuple[Response, int]:
-    """Return the response with the shortest run time and the shortest set-up time, and the runs."""
-    return best_of_each([action], most_s)[0]
+def best_of(actions: Sequence[Callable[[], Response]], most_s: float) -> list[tuple[Response, int]]:
+    """Return of each action the response with the shortest run and set-up times, and the runs.
 
-
-def best_of_each(
-    actions: Sequence[Callable[[], Response]], most_s: float
-) -> list[tuple[Response, int]]:
-    """Return the same of several actions that are run in turn until the time of each is known.
-
-    What else a machine does for a while meets them all alike. `most_s` is the time [s] spent at
-    most on each, in the mean.
+    They are run in turn until the time of each is known, so that what else a machine does for a
+    while meets them all alike. `most_s` is the time [s] spent at most on each, in the mean.
     """
     began, rounds, known = perf_counter(), list[list[Response]](), False
     while not known:
@@ -76,13 +68,11 @@ def exact_cost(lines: pd.DataFrame) -> float:
     return float((tight["wall_s"] * tight["cases"]).sum() / (tight["cases"].sum() or math.nan))
 
 
-def method_title(method: str) -> str:
-    """Return how a method is called beside others: an engine by its title, with its preset."""
+def parts_of(method: str) -> tuple[str, str, str]:
+    """Return a method's engine, preset and what else is varied; empty words of all others."""
     engine, _, varied = method.partition(" ")
-    if engine not in ENGINES:
-        return method
-    preset, comma, dial = varied.partition(", ")
-    return f"{ENGINES[engine].title}, {look_of(preset).short}{comma}{dial}"
+    preset, _, dial = varied.partition(", ")
+    return (engine, preset, dial) if engine in ENGINES else ("", "", "")
 
 
 def cheapest_kept(

@@ -39,11 +39,6 @@ def columns() -> dict[tuple[str, str], tuple[str, ...]]:
     }
 
 
-def meaning_of(measure: str) -> str:
-    """Return what a column measures, for the head of a table."""
-    return columns()["", measure][-1].partition(";")[0].replace("|", "∣")
-
-
 def dictionary(published: Path) -> pd.DataFrame:
     """Return a line for each column of every published table: its type, unit and meaning."""
     known = columns()

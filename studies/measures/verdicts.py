@@ -8,8 +8,8 @@ from typing import Any
 from analytic import conditioning, simulate
 from analytic.response import Outcome, Reason, Response
 from studies.cases.extreme import Extreme
-from studies.measures.energy import growth
-from studies.measures.wrongness import FALL, MEANINGS, NO_ANSWER, REST, WORDS, kind_of
+from studies.measures.history import growth
+from studies.measures.wrongness import FALL, NO_ANSWER, REST, kind_of
 from studies.sources.registry import resolve
 
 BAND, WIDE_BAND = 0.01, 0.1
@@ -34,20 +34,6 @@ class Verdict(enum.Enum):
     FAILED = NO_ANSWER
     INVALID = "invalid"
 
-
-SENTENCES = {
-    Verdict.GOOD: "outcome right, peak within 1 % or 1e-6 θcr",
-    Verdict.UNSEEN: "misses a rocking below 1e-6 θcr",
-    Verdict.COARSE: "peak within 10 %",
-    Verdict.OFF: "peak off by more than 10 %",
-    Verdict.SLIDES: "slides more than 1 % of B",
-    Verdict.ENERGY: "energy grows by more than 1 %",
-    Verdict.FALL: WORDS[FALL],
-    Verdict.REST: f"{WORDS[REST]} ({MEANINGS[REST]})",
-    Verdict.FAILED: WORDS[NO_ANSWER],
-    Verdict.INVALID: "the reference is not valid here",
-}
-"""Verdict -> what a reader sees."""
 
 ACCEPTED = (Verdict.GOOD, Verdict.UNSEEN, Verdict.INVALID)
 """Verdicts that are nobody's failure."""

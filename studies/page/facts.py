@@ -38,8 +38,6 @@ Line: TypeAlias = "Mapping[Any, Any] | pd.Series[Any]"
 Table: TypeAlias = tuple[list[str], list[list[str]]]
 """Heads, and the cells of each row."""
 TITLES = {name: ENGINES[name].title for name in OWN}
-LEVELS = (OWN_STEP, AT_ONCE)
-"""With the rest before the motion, and without."""
 
 
 def presets(published: Path) -> pd.DataFrame:
@@ -185,14 +183,10 @@ def unsettled(published: Path) -> Table:
     """Return the largest error of each engine as documented, and without the rest before it."""
     lines = table_in(published / "contact", "variants", "factor", "level", "trap")
     lines = lines[(lines["preset"] == DEFAULT) & (lines["factor"] == OWN_STEPS)]
-    found = lines.set_index(["engine", "level"]).to_dict("index")
-    rows = [
-        [
-            title,
-            *(_error(found[key]) if (key := (name, level)) in found else "–" for level in LEVELS),
-        ]
-        for name, title in TITLES.items()
-    ]
+    lines = lines.assign(cell=[_error(line) for line in lines.to_dict("records")])
+    cells = lines.pivot(index="engine", columns="level", values="cell")
+    cells = cells.reindex(index=[*TITLES], columns=[OWN_STEP, AT_ONCE]).fillna("–")
+    rows = [[TITLES[name], *line] for name, *line in cells.itertuples()]
     return ["engine", f"after {REST_S:g} s at rest", "shaken at once"], rows
 
 

@@ -22,7 +22,7 @@ from studies.measures.presets import in_order, in_words
 from studies.measures.wrongness import KINDS, MEANINGS, WORDS, in_kinds
 from studies.page.chapters import CHAPTERS, PARTS, Part
 from studies.page.facts import presets
-from studies.sources.registry import Source, resolve
+from studies.sources.registry import resolve
 from studies.sweep import STUDY as SWEEP
 
 GOOD, BAD = 1e-3, 0.1
@@ -152,7 +152,7 @@ def engine_cases(folder: Path) -> dict[str, Any]:
     Of each of AXES its values; peaks: source -> the peaks of all cases in their order, -1 where it
     overturns, None where it failed; judged: of each case 1, or 0 where the block would slide or
     lift off; rests: for how long all is at rest before the pulse [s]; written: the sources that
-    `rocking export` writes out.
+    `rocking export` writes out, engines with equal steps.
     """
     rows = table_in(folder / "defaults", "defaults")
     if rows.empty:
@@ -166,6 +166,7 @@ def engine_cases(folder: Path) -> dict[str, Any]:
         str(name): [float(f"{peak:.5g}") if math.isfinite(peak) else None for peak in wide[name]]
         for name in rows["source"].unique()
     }
+    engines = {name: it for name in found if (it := resolve(name)).engine}
     cases = rows.assign(slides=rows["verdict"] == "invalid").groupby(list(AXES))
     slides = cases["slides"].any().reindex(order, fill_value=False)
     return {
@@ -173,10 +174,5 @@ def engine_cases(folder: Path) -> dict[str, Any]:
         "peaks": found,
         "judged": (1 - slides.astype(int)).tolist(),
         "rests": cases["rest_s"].first().reindex(order).tolist(),
-        "written": [name for name in found if _is_written(resolve(name))],
+        "written": [name for name, it in engines.items() if it.declared.script and not it.accurate],
     }
-
-
-def _is_written(source: Source) -> bool:
-    """Return whether `rocking export` writes a source out: an engine with equal steps."""
-    return bool(source.engine and source.declared.script) and not source.accurate

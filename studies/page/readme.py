@@ -21,9 +21,9 @@ from studies.kit.say import capital, duration, part
 from studies.kit.store import check, versions, write_record
 from studies.kit.tables import read_table, tables_of, write_table, write_text
 from studies.measures.costs import STEPPED
+from studies.measures.history import samples
 from studies.measures.presets import in_words
 from studies.measures.published import dictionary
-from studies.measures.samples import samples
 from studies.measures.wrongness import MEANINGS, WORDS, in_kinds
 from studies.page import facts
 from studies.page.chapters import CHAPTERS, Part, published_parts

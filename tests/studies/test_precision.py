@@ -45,10 +45,10 @@ def test_the_best_run_is_kept_with_the_least_set_up():
         wall_s, setup_s = next(runs)
         return replace(Response.failure("timed", wall_s=wall_s), setup_s=setup_s)
 
-    response, count = best_of(action, MOST_S)
+    ((response, count),) = best_of([action], MOST_S)
     assert (response.wall_s, response.setup_s) == (1.0, 0.1)
     assert count >= LEAST_RUNS
-    assert best_of(action, 0.0)[1] == 1
+    assert best_of([action], 0.0)[0][1] == 1
     assert cost_text(0.0124, 5) == "12.4 ms" and cost_text(0.0124, 1) == "12.4 ms (1 run)"
 
 

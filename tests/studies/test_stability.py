@@ -14,7 +14,7 @@ from studies.__main__ import run as rocking
 from studies.cases.extreme import QUICK, SPRINGS, Extreme, extremes
 from studies.kit.run import lost_row, run
 from studies.kit.study import Study
-from studies.measures.energy import energy, growth
+from studies.measures.history import energy, growth
 from studies.measures.verdicts import Verdict, judge
 from studies.sources.registry import resolve
 from studies.stability import FACTOR, LARGEST_STEP, SMALLEST_STEP, largest_good

@@ -1,18 +1,40 @@
-"""The energy of free rocking, read from a history: what a method loses or adds by itself."""
+"""A history as a table, and its energy of free rocking: what a method loses or adds by itself."""
 
 import itertools
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from analytic.block import Rocker
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Response
+from engines.scene import System
 
 SAMPLES = 400
 """Samples of a history from which energies are read."""
 NEAR = 0.15
 """Part of a flight at either end in which a coarse step may still feel the impact."""
+
+
+def samples(
+    response: Response, system: System, motion: Motion, labels: Mapping[str, Any]
+) -> pd.DataFrame:
+    """Return the history of a response as a table: labels, outcome, motion of ground and block."""
+    history = response.history
+    assert history is not None
+    return pd.DataFrame(
+        {
+            **labels,
+            "outcome": response.outcome.value,
+            "time_s": history.time,
+            "ground_g": motion.acceleration(history.time) / system.gravity,
+            "theta_ratio": history.theta / system.alpha,
+            "velocity_rad_s": history.velocity,
+        }
+    )
 
 
 def energy(block: Rocker, history: History) -> FloatArray:
