@@ -1,5 +1,7 @@
 """A history as a table, and its energy of free rocking: what a method loses or adds by itself."""
 
+from __future__ import annotations
+
 import itertools
 import math
 from collections.abc import Mapping
