@@ -1,15 +1,13 @@
 """What tests ask of an engine, by what it declares."""
 
-from contextlib import contextmanager
 from enum import Enum
 
 import pytest
 
-from engines import ENGINES, registry
+from engines import ENGINES
 from engines.registry import find
 from engines.run.run import run as run_use
 from engines.world import ROUNDINGS
-from studies.sources import registry as sources
 
 STEPS_ADD_UP = 1e4
 """Steps over whose roundings the errors of two runs may add up that should be equal."""
@@ -63,14 +61,3 @@ def equal_to(engine, exactly=1e-9):
 def rounding(engine):
     """Return within what a number comes back that an engine was given."""
     return max(1e-12, ROUNDINGS * ENGINES[engine].precision.value)
-
-
-@contextmanager
-def announced(name, place):
-    """Make an engine known for a while, to this process and to those that it starts."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(registry.FURTHER, f"{name}={place}")
-        registry._places.cache_clear()
-        patch.setitem(sources.SOURCES, name, sources._engine(name, ENGINES[name].best.name))
-        yield
-    registry._places.cache_clear()

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -67,39 +68,22 @@ class Threshold:
 
 
 ZHANG_BLOCK = block_of(0.25, 2.14, 0.9)
-AT_FIVE = {"omega": 5.0 * ZHANG_BLOCK.p, "unit_g": 0.25}
+at_five = partial(Threshold, ZHANG, "housner", ZHANG_BLOCK, 5.0 * ZHANG_BLOCK.p, unit_g=0.25)
+of_peer = partial(Threshold, PEER, "exact", omega=math.pi, phase=COSINE)
 SMALL, LARGE = RigidBlock(width=0.4, height=1.2), RigidBlock(width=1.0, height=3.0)
 TURN = 2.0 * math.pi
 THRESHOLDS = (
-    Threshold(
-        ZHANG, "housner", ZHANG_BLOCK, low=3.00, high=3.01, found=3.01864, shift=-2e-3, **AT_FIVE
-    ),
-    Threshold(
-        ZHANG, "housner", ZHANG_BLOCK, low=6.32, high=6.33, found=6.3179, shift=1e-3, **AT_FIVE
-    ),
-    Threshold(
-        ZHANG, "housner", ZHANG_BLOCK, low=7.17, high=7.18, found=7.16813, shift=1e-3, **AT_FIVE
-    ),
+    at_five(low=3.00, high=3.01, found=3.01864, shift=-2e-3),
+    at_five(low=6.32, high=6.33, found=6.3179, shift=1e-3),
+    at_five(low=7.17, high=7.18, found=7.16813, shift=1e-3),
     Threshold(ZHANG, "exact", ZHANG_BLOCK, 15.7, 2.215, 2.225, 2.2232),
     Threshold(ZHANG, "housner", ZHANG_BLOCK, 15.7, 3.235, 3.245, 3.2301, shift=1e-3),
     Threshold(ROUSSOS, "housner", SMALL, TURN, 0.5535, 0.5545, 0.554586, 1, shift=-1e-3),
     Threshold(ROUSSOS, "housner", LARGE, TURN, 0.4513, 0.4514, 0.451540, shift=-8e-4),
     Threshold(ROUSSOS, "exact", LARGE, TURN, 0.6245, 0.6255, 0.625845, phase=COSINE, shift=-1e-3),
-    Threshold(
-        PEER, "exact", block_of(TURN / 24, 2.0), math.pi, 0.315, 0.316, 0.315034, phase=COSINE
-    ),
+    of_peer(block_of(TURN / 24, 2.0), low=0.315, high=0.316, found=0.315034),
     # no rounding explains this one
-    Threshold(
-        PEER,
-        "exact",
-        block_of(TURN / 24, 1.0),
-        math.pi,
-        0.531,
-        0.532,
-        0.530710,
-        phase=COSINE,
-        shift=1e-3,
-    ),
+    of_peer(block_of(TURN / 24, 1.0), low=0.531, high=0.532, found=0.530710, shift=1e-3),
 )
 
 

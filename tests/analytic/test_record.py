@@ -13,7 +13,6 @@ from analytic import MODELS, Outcome, Record, RigidBlock, integrate, simulate
 from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from studies import respond
-from studies.cases.accelerograms import read_record
 from studies.sources.registry import SOURCES
 
 WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])
@@ -115,8 +114,8 @@ the engine's roundings; the paper's solvers end an excursion up to 1e-6 rad late
 
 EACH = [name for name, source in SOURCES.items() if source.kind != "engine"]
 EACH += [f"{name}:{use.name}" for name in installed_engines() for use in ENGINES[name].presets]
-DEAR = "pymunk:tuned"
-"""It takes as long as all the others together; its other presets stand for it."""
+DEAR = ("pymunk:tuned", "newton:tuned", "drake:error-controlled")
+"""They take as long as all the others together; their engines' other presets stand for them."""
 DRAGGED = "pybullet:default"
 """Its damping of 0.04, in the world's frame, drags a block on a floor of 9 m/s."""
 
@@ -143,7 +142,7 @@ def followed(name, record, **options):
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=[*missing(name), *[pytest.mark.slow] * (name == DEAR)])
+        pytest.param(name, marks=[*missing(name), *[pytest.mark.slow] * (name in DEAR)])
         for name in EACH
     ],
 )
@@ -170,40 +169,3 @@ def test_a_long_record_through_every_source(name):
     exact, response = followed(name, noise(5, 8001, 0.005, 1.3 * ONSET))
     assert len(exact.rests) >= 2
     assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=2.0 * band(name))
-
-
-AT2 = "PEER\nA\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 5, DT= .1 SEC\n0 .1 .3 -.4 0\n"
-TABLE = "time_s,acceleration_g\n0,0\n0.1,0.1\n0.2,0.3\n0.3,-0.4\n0.4,0\n"
-IN_G = np.array([0.0, 0.1, 0.3, -0.4, 0.0])
-
-
-@pytest.mark.parametrize(
-    ("text", "units"), [(AT2, None), (TABLE, None), (TABLE.replace("_g", ""), "g")]
-)
-def test_an_at2_file_and_a_table_are_the_same_record(text, units, tmp_path):
-    path = tmp_path / "a.txt"
-    path.write_text(text)
-    record = Record.read(str(path), units)
-    assert record == Record.read(path, units) == read_record(path, units)
-    assert record.dt == pytest.approx(0.1, rel=1e-15)
-    np.testing.assert_array_equal(record.samples, 9.81 * IN_G)
-
-
-@pytest.mark.parametrize(
-    ("text", "units", "problem"),
-    [
-        (TABLE.replace("_g", ""), None, "it does not state its units; units must: g, mg"),
-        (TABLE, "feet", "units must be among g, mg, .*, not 'feet'"),
-        (TABLE.replace("-0.4", "x"), None, "line 5: 'x' must be a number"),
-        (None, None, "it must be a file that can be read"),
-    ],
-)
-def test_what_leaves_a_doubt_is_refused_with_the_file_s_name(text, units, problem, tmp_path):
-    """Each doubt: tests/studies."""
-    path = tmp_path / "doubt.txt"
-    if text:
-        path.write_text(text)
-    with pytest.raises(ValueError, match=problem) as error:
-        Record.read(path, units)
-    assert str(error.value).startswith(f"path is {str(path)!r}; ")
-    assert "\n" not in str(error.value)

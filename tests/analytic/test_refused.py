@@ -20,10 +20,7 @@ from analytic import (
     peak_ratios,
     simulate,
 )
-from analytic.criteria import (
-    frictionless_fall,
-    overturning_amplitude,
-)
+from analytic.criteria import frictionless_fall, overturning_amplitude
 from engines import Scene
 
 INF, NAN = math.inf, math.nan
@@ -42,6 +39,7 @@ USUAL = {
     SinePulse: {"amplitude": 4.0, "omega": 6.0, "half_cycles": 1},
     Record: {"dt": 0.1, "samples": [1.0, 2.0]},
     Delayed: {"motion": HALF_SINE, "rest_s": 1.0},
+    Record.read: {"path": "nowhere.txt"},
     simulate: SHAKEN,
     integrate: SHAKEN,
     peak_ratios: ARRAYS,
@@ -112,6 +110,8 @@ TOGETHER = [
     (Record, {"samples": [1e307, -1e307], "dt": 0.01}, "a sample 1e+307; "),
     (Record, {"dt": 1e100, "samples": [0.0, 1e200]}, "dt is 1e+100 and a sample 1e+200; the disp"),
     (Record, {"dt": 1e-100, "samples": [0.0, 1e250]}, "dt is 1e-100 and a sample 1e+250; the slop"),
+    (Record.read, {}, "path is 'nowhere.txt'; it must be a file that can be read"),
+    (Record.read, {"units": "feet"}, "units must be among g, mg, m/s2"),
     (simulate, {"times": [1.0, 0.5]}, "increasing"),
     *((ask, {**RELEASED, "times": [-0.5, 0.5]}, "times begin at -0.5") for ask in ROUTES),
     (simulate, {"block": BOX, "model": "housner"}, "a SlidingBlock has only 'exact'"),

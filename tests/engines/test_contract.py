@@ -143,24 +143,11 @@ def test_an_engine_is_imported_when_named_and_says_nothing(engine):
 
 def test_faults_are_asked_while_a_run_goes_on():
     """A setting that was not taken ends a run long before its hour of rest is over."""
-
-    class Faulty(ScriptedWorld):
-        def fault(self):
-            return "the moon is full"
-
-    response = simulate_world(Faulty(scene()), scene(pulse(0.5, 1.0), duration=3600.0), 1e-3)
+    world = ScriptedWorld(scene())
+    world.fault = lambda: "the moon is full"
+    response = simulate_world(world, scene(pulse(0.5, 1.0), duration=3600.0), 1e-3)
     assert (response.reason, response.message) == (Reason.FAULT, "the moon is full")
     assert response.steps < 1000
-
-
-class Lost(Bare):
-    """A world that hands out what a broken engine might."""
-
-    def __init__(self, pose):
-        self.pose = pose
-
-    def state(self):
-        return [self.pose]
 
 
 @pytest.mark.parametrize(
@@ -175,6 +162,8 @@ class Lost(Bare):
     ],
 )
 def test_poses_that_are_no_rocking_block(pose, amount, reason):
-    response = simulate_world(Lost(pose), scene(pulse(1.3, 1.0)), 1e-3)
+    world = Bare()
+    world.state = lambda: [pose]
+    response = simulate_world(world, scene(pulse(1.3, 1.0)), 1e-3)
     assert (response.outcome, response.reason) == (Outcome.FAILED, reason)
     assert amount in response.message

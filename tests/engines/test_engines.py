@@ -37,7 +37,10 @@ from engines.declaration import UNTUNED, Stepping
 from engines.run.run import LAG, build, simulate_world
 
 
-@pytest.mark.parametrize(("engine", "preset", "frame"), TUNED_IN_FRAMES)
+@pytest.mark.parametrize(
+    ("engine", "preset", "frame"),
+    [pytest.param(*use, marks=[pytest.mark.slow] * (use[2] == "world")) for use in TUNED_IN_FRAMES],
+)
 def test_onset(engine, preset, frame):
     """Below g tan(alpha) nothing lifts and above it something does, or the base is not felt."""
     below, above = (
@@ -64,7 +67,7 @@ def test_mirror(engine, preset):
 
 @every_tuned_use
 def test_rest_stays_rest(engine, preset):
-    response = rocked(engine, pulse(0.5, 1.0), preset=preset, duration=5.0, times=[1.0, 5.0])
+    response = rocked(engine, pulse(0.5, 1.0), preset=preset, duration=3.0, times=[1.0, 3.0])
     assert response.outcome is Outcome.AT_REST
     # the contact may settle, by less than a thousandth of what would topple the block
     assert abs(response.history.theta).max() < 1e-3 * BLOCK.alpha
@@ -93,10 +96,11 @@ def test_how_a_block_lies_does_not_depend_on_the_steps(engine, preset):
 @every_landing_use
 def test_the_size_of_a_block_does_not_matter(engine, preset):
     """Nothing of it is clamped, lost or rounded away: single precision keeps 1e-4 of the peak."""
+    within = 1e-6 if engine in CORE else 1e-4
     blocks = [RigidBlock(width=width, height=3.0 * width) for width in (0.02, 0.5, 20.0)]
     asked = {"preset": preset, "accuracy": "loose"}
     peaks = [rocked(engine, pulse(1.3, 3.0, 2, it), system=it, **asked).peak_ratio for it in blocks]
-    assert peaks == pytest.approx([peaks[1]] * 3, rel=1e-4)
+    assert peaks == pytest.approx([peaks[1]] * 3, rel=within)
 
 
 @pytest.mark.parametrize(("engine", "preset"), in_both_frames(TUNED))
@@ -162,7 +166,7 @@ def test_repeats_bit_by_bit(engine, preset):
     """Whatever was simulated in between, in whichever process."""
     asked = {"preset": preset, "times": [0.1 * i for i in range(10)]}
     first = all_but_times(rocked(engine, **asked))
-    rocked(engine, pulse(1.5, 1.0), system=RigidBlock(width=2.0, height=3.0))
+    rocked(engine, pulse(1.5, 1.0), system=RigidBlock(width=2.0, height=3.0), max_steps=300)
     assert all_but_times(rocked(engine, **asked)) == first
 
 
@@ -191,13 +195,6 @@ FREEZER = RigidBlock(width=0.6, height=1.8)
 """With a friction of 0.3 it slides flat: it would rock from B/H = 1/3 on."""
 
 
-def slid_of(response):
-    """Return the slip [m] that a message names, and what it says is allowed."""
-    named = re.search(r"the pivot slid (\S+) m along the base", response.message)
-    allowed = re.search(r"at most (\S+) m", response.message)
-    return float(named[1]), float(allowed[1]) if allowed else math.nan
-
-
 @every_landing_use
 @pytest.mark.parametrize("shaken", [(0.35, 6.28), (0.8, 9.0)])
 def test_steps_that_land_fail_by_name_once_their_pivot_slides(engine, preset, shaken):
@@ -205,7 +202,8 @@ def test_steps_that_land_fail_by_name_once_their_pivot_slides(engine, preset, sh
     motion = SinePulse.in_g(shaken[0], omega=shaken[1])
     found = rocked(engine, motion, system=FREEZER, preset=preset, friction=0.3)
     assert (found.outcome, found.reason) == (Outcome.FAILED, Reason.SLID)
-    slid, allowed = slid_of(found)
+    named = re.search(r"the pivot slid (\S+) m along the base.* at most (\S+) m", found.message)
+    slid, allowed = map(float, named.groups())
     assert allowed == pytest.approx(0.01 * FREEZER.width)
     assert allowed <= slid < 2.0 * allowed
 

@@ -30,7 +30,7 @@ MOST = 40_000
 
 @pytest.mark.parametrize(("engine", "preset"), AWAKE)
 @settings(
-    max_examples=6,
+    max_examples=5,
     deadline=None,
     derandomize=True,
     phases=[Phase.generate],  # to shrink a failure would take as long as all the rest
@@ -61,7 +61,7 @@ def test_hardly_above_the_onset(engine, preset, excess, omega, aspect, half_cycl
 @pytest.mark.parametrize(
     ("engine", "preset"), [pytest.param(*use, marks=held_to(Miss.SLEEP, *use)) for use in USES]
 )
-@pytest.mark.parametrize("quiet_s", [0.7, 2.0])
+@pytest.mark.parametrize("quiet_s", [pytest.param(0.7, marks=pytest.mark.slow), 2.0])
 def test_a_quiet_start_changes_nothing_but_the_time(engine, preset, quiet_s):
     """That a library reads a setting back is no proof: what sleeps through it stays where it is."""
     dt_s, motion = 0.01, pulse(1.3, 4.0, 2)

@@ -33,10 +33,6 @@ def name_of(variant):
     return variant.engine, variant.preset, varied
 
 
-def of(*names):
-    return next(variant for variant in VARIANTS if name_of(variant) == names)
-
-
 FIRST = {(v.engine, v.factor): v for v in reversed(VARIANTS)}.values()
 """Of each engine one variant of each factor."""
 

@@ -329,6 +329,8 @@ def test_a_doubt_is_refused_with_one_line(name, content, units, words, tmp_path)
     assert words in message
     assert "\n" not in message
     assert len(message) < len(str(path)) + 300
+    with pytest.raises(ValueError, match=r"^path is "):
+        Record.read(path, units)
 
 
 MARKS = "0123456789.,;:eE+-= \t\r\n#%()[]_/*gmscANPTSDT\x00\x1a\u0663\u00e9\ufeff"

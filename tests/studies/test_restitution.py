@@ -13,8 +13,7 @@ from engines import ENGINES
 from studies import restitution
 from studies.cases.ways import WAYS, damping_ratio, given_back
 from studies.contact import newton_e
-from studies.measures.published import PUBLISHED
-from studies.restitution import STUDY, best_of, finding, job_of, measure
+from studies.restitution import best_of, finding, job_of, measure
 
 QUICK = {"rate_over_alpha_p": 2.0, "p_dt": 1e-4}
 """An impact in which the weight matters little."""
@@ -132,9 +131,3 @@ def test_the_best_way_does_not_slide_and_a_tie_goes_to_what_is_usually_closer():
     words = finding({"corners": corners})
     assert "1 of 3" in words and "2 of 3" in words and "0.2;" in words and "Rapier" in words
     assert "Rapier" in finding({"corners": corners[corners["engine"] == "rapier"]})
-
-
-def test_seven_of_the_published_engines_keep_what_is_asked_for():
-    tables = STUDY.read(PUBLISHED / "restitution")
-    words = finding(tables)
-    assert words.count("7 of 8") == 2 and "0.2;" in words and "Rapier" in words
