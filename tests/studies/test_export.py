@@ -43,7 +43,7 @@ LEFT_OUT = {
     # where Dantzig's solver fails, PGS starts from what is known again by addresses
     ("dart", "frame", "tuned"),
 }
-QUICK = [("mujoco", "block"), ("mujoco", "frame"), ("pymunk", "slide"), ("pymunk", "floor")]
+QUICK = [("pybullet", "block"), ("mujoco", "frame"), ("pymunk", "slide"), ("pymunk", "floor")]
 SLOW = [(engine, kind) for engine in USES for kind in KINDS if (engine, kind) not in QUICK]
 
 
