@@ -9,13 +9,12 @@ import numpy as np
 from analytic.response import Outcome
 from analytic.slide import SlidingBlock
 from studies.cases.refusal import BadInputError
-from studies.compare.rows import measure
 from studies.kit.arguments import Place, Sources, check_file
 from studies.kit.cluster import place_of
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.options import Computing, Yours
 from studies.kit.run import Place as Where
-from studies.kit.run import exit_code, here, run
+from studies.kit.run import exit_code, here, run, with_response
 from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
 from studies.sources.registry import core_sources
 
@@ -74,7 +73,7 @@ def moved(case: Question, sources: Sequence[str], yours: Yours, place: Where = h
     """Run the sources; return their rows with the rotation [rad] or place [m] at every time."""
     own = yours.options(sources, case.system)
     jobs = [Job(labels={}, case=case, source=name, options=own[name]) for name in sources]
-    rows, times = run(jobs, measure, place), np.asarray(case.times)
+    rows, times = run(jobs, with_response, place), np.asarray(case.times)
     for row in rows:
         if (history := row["response"].history) is not None:
             row["theta"] = np.interp(times, history.time, history.theta)

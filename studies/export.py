@@ -15,13 +15,12 @@ from engines.run.slide import LEAST_SLIP, SLIP_RATE
 from engines.run.steps import begin_of
 from engines.settings import perhaps
 from studies.cases.refusal import BadInputError
-from studies.compare.rows import measure
 from studies.kit.arguments import Place, Step, TimeLimit, refuse_both
 from studies.kit.cluster import place_of
 from studies.kit.identity import version_of
 from studies.kit.jobs import Job, Question
 from studies.kit.options import Computing, Yours
-from studies.kit.run import exit_code, run
+from studies.kit.run import exit_code, run, with_response
 from studies.kit.say import listed
 from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
 from studies.kit.store import project_version
@@ -73,7 +72,9 @@ def command(
     scene = scene_of(system, motion, preset, start=start, duration=window, **options)
     questions = {"exact": {}, source: options}
     jobs = [Job(labels={}, case=case, source=each, options=of) for each, of in questions.items()]
-    rows = run(jobs, measure, place_of(Computing(jobs=1, time_limit=time_limit), at_once=True))
+    rows = run(
+        jobs, with_response, place_of(Computing(jobs=1, time_limit=time_limit), at_once=True)
+    )
     if code := exit_code(rows):
         return code
     answers = [row["response"] for row in rows]

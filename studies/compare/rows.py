@@ -11,8 +11,8 @@ from analytic import RigidBlock
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
 from engines.scene import System
-from studies.kit.jobs import Job, Question, Row, ask, summary
-from studies.kit.run import Place, here, run
+from studies.kit.jobs import Job, Question, Row
+from studies.kit.run import Place, here, run, with_response
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import ELSEWHERE, estimate_of, halved, published_trust
 
@@ -45,7 +45,7 @@ def compare(
         for name in dict.fromkeys(["exact", *sources])
     ]
     finer = [half for job in jobs if (half := halved(job)) is not None] if estimate else []
-    every = run([*jobs, *finer], measure, place)
+    every = run([*jobs, *finer], with_response, place)
     rows = {row["source"]: row for row in every[: len(jobs)]}
     halves = {row["source"]: row for row in every[len(jobs) :]}
     exact: Response = rows["exact"]["response"]
@@ -61,12 +61,6 @@ def compare(
         slides = f"slides: needs {exact.friction_needed:.3g}, has {yours.friction:.3g}"
         rows["exact"]["message"] = "; ".join(filter(None, (rows["exact"]["message"], slides)))
     return [rows[name] for name in sources]
-
-
-def measure(job: Job) -> Row:
-    """Return the columns that every row has, and the response."""
-    response = ask(job)
-    return {**summary(response), "response": response}
 
 
 def _beside(response: Response, exact: Response, p: float) -> dict[str, float]:

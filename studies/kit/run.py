@@ -21,7 +21,7 @@ from engines.run.look import PACKAGE, compile_look
 from studies.cases.refusal import BadInputError
 from studies.kit.app import ENDING
 from studies.kit.identity import Maker, maker_of
-from studies.kit.jobs import Job, Row, ask, unanswered
+from studies.kit.jobs import Job, Row, ask, summary, unanswered
 from studies.kit.say import say
 from studies.kit.store import Store, labels_of
 from studies.kit.workers import Lost, answers, deferring
@@ -72,6 +72,12 @@ def local(
             reason = Reason.UNDECIDED if row.late else Reason.ERROR
             row = lost_row(measure, jobs[number], Response.failure(row.why, reason=reason))
         yield number, row
+
+
+def with_response(job: Job) -> Row:
+    """Return the columns that every row has, and the response."""
+    response = ask(job)
+    return {**summary(response), "response": response}
 
 
 _loaded = set[str]()
