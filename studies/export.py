@@ -7,7 +7,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from analytic import RigidBlock, RockingFrame, SlidingBlock
+from analytic import Outcome, RigidBlock, RockingFrame, SlidingBlock
 from engines import ENGINES
 from engines.declaration import Stepping, Use
 from engines.run import ground
@@ -80,7 +80,7 @@ def command(
     answers = [row["response"] for row in rows]
     slides = isinstance(system, SlidingBlock)
     exact, found = (each.slips if slides else each.peak_ratio for each in answers)
-    if not found:
+    if answers[-1].outcome is Outcome.AT_REST:
         raise BadInputError(
             f"--engine is {engine!r}; what is exported must move there, and stays at rest"
         )

@@ -40,8 +40,9 @@ def test_the_finding_of_presets_names_the_worst_engine_of_the_best():
     lines = pd.DataFrame(
         {
             "figure": "all", "source": ["mujoco:default", "mujoco:tuned", "pybullet:tuned"],
-            "cases": 10, "agree": [2, 10, 9], "fall_wrong": 0, "rest_wrong": 0, "no_answer": 0,
-            "median_error": 0.1, "p90_error": 0.1, "max_error": [0.9, 0.02, 0.03], "wall_s": 1.0,
+            "cases": 10, "survivors": 5, "agree": [2, 10, 9], "fall_wrong": 0, "rest_wrong": 0,
+            "no_answer": 0, "median_error": 0.1, "median_difference": 0.05, "p90_error": 0.1,
+            "max_error": [0.9, 0.02, 0.03], "wall_s": 1.0,
         }
     )  # fmt: skip
     words = sweep.finding({"summary": lines})
