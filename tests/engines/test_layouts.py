@@ -98,7 +98,7 @@ def test_a_beam_that_slides_along_its_columns_is_named():
 
 
 @pytest.mark.parametrize("engine", [name for name in HERE if name not in ("drake", "newton")])
-@pytest.mark.parametrize("friction", [0.1, 0.2])
+@pytest.mark.parametrize("friction", [0.1, pytest.param(0.2, marks=pytest.mark.slow)])
 def test_a_slide_ends_where_it_should(engine, friction):
     """Tuned engines give up g mu dt^2 of a slip where it starts and stops, dt = 1e-4 s at most, and
     single precision a part 1e-4 of its end."""
