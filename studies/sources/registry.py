@@ -208,8 +208,10 @@ def core_sources(*presets: str) -> tuple[str, ...]:
 def expanded(names: Iterable[str]) -> Iterator[str]:
     """Yield the names with those of engines in place of a group's; "engines:tuned" has a preset.
 
-    Engines of a group that have no such preset are left out, unless none has it.
+    Engines of a group that have no such preset are left out, unless none has it; so are those whose
+    best preset another group had.
     """
+    had: set[tuple[str, str]] = set()
     for name in names:
         group, colon, preset = name.partition(":")
         if group not in GROUPS:
@@ -217,4 +219,8 @@ def expanded(names: Iterable[str]) -> Iterator[str]:
             continue
         engines = GROUPS[group]()
         having = [e for e in engines if not colon or preset in presets_of(resolve(e))]
-        yield from (f"{engine}{colon}{preset}" for engine in having or engines)
+        for engine in having or engines:
+            use = engine, preset or resolve(engine).preset
+            if use not in had:
+                yield f"{engine}{colon}{preset}"
+            had.add(use)
