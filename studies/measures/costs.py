@@ -18,6 +18,11 @@ LEAST_RUNS, LEAST_S = 5, 0.02
 """A time is of the best of so many runs at least, or marked; in that time [s] all gets warm."""
 STEPPED = "A compiled loop over `mj_step` takes MuJoCo's steps; Python takes all others."
 """Said beside times of a step or of a case."""
+OUTDATED = (
+    "The published times of `default`, `default-at-rest` and `recommended`, and all of PyBullet's, "
+    "were taken beside other work: they are up to three times too long."
+)
+"""Said beside them until they are measured again."""
 
 EXACT = "Taylor series"
 """The method to whose time the others are compared."""
