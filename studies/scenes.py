@@ -288,15 +288,17 @@ SUMMED = {"frame": _of_frames, "slide": _of_slides, "floor": _of_floors}
 
 def finding(tables: Tables) -> str:
     """Say how far off the engines are on random cases with their best presets, and who throws."""
-    frames, boxes = (_best(tables[f"{RANDOM}{scene}-summary"]) for scene in ("frame", "slide"))
-    known = {"the largest rotation of a frame": frames, "a slip of a random block": boxes}
+    chosen = {scene: tables[f"{scene}-summary"] for scene in ("frame", "slide")}
+    drawn = {scene: tables.get(f"{RANDOM}{scene}-summary", it) for scene, it in chosen.items()}
+    frames, boxes = map(_best, drawn.values())
+    known = {"the largest rotation of a frame": frames, "a slip of a block": boxes}
     best = {what: lines for what, lines in known.items() if len(lines)}
     if not best:
         return "No engine that was asked is built for these scenes."
     off = [f"{what} by up to {part(lines['max_error'].max())}" for what, lines in best.items()]
     wrong = sum(int(lines["wrong"].sum()) for lines in best.values())
     beside = f", and predict {wrong} outcomes wrong" if wrong else ""
-    every = pd.concat([tables["slide-summary"], tables[f"{RANDOM}slide-summary"]])
+    every = pd.concat([chosen["slide"], drawn["slide"]])
     thrown = every.reindex(columns=["source", "thrown_off"]).query("thrown_off > 0")["source"]
     lost = f" A block that slides is thrown off the base by {listed(thrown.unique())}."
     said = f"The engines, each with its best preset, miss {listed(off)}{beside}."

@@ -19,8 +19,8 @@ LEAST_RUNS, LEAST_S = 5, 0.02
 STEPPED = "A compiled loop over `mj_step` takes MuJoCo's steps; Python takes all others."
 """Said beside times of a step or of a case."""
 OUTDATED = (
-    "The published times of `default`, `default-at-rest` and `recommended`, and all of PyBullet's, "
-    "were taken beside other work: they are up to three times too long."
+    "The published times of `default`, `default-at-rest` and `recommended`, and all of PyBullet's "
+    "and pymunk's, are of a slower machine and beside other work: up to three times too long."
 )
 """Said beside them until they are measured again."""
 
