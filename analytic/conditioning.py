@@ -100,7 +100,7 @@ def sensitivity(
     >>> block = RigidBlock(width=0.5, height=1.5)
     >>> pulse = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
     >>> round(sensitivity(block, pulse), 2)
-    26.62
+    26.76
     """
     return float(_largest_move(scaled(block, motion, model, start)))
 
