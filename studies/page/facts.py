@@ -185,7 +185,7 @@ def unsettled(published: Path) -> Table:
     lines = lines[(lines["preset"] == DEFAULT) & (lines["factor"] == OWN_STEPS)]
     lines = lines.assign(cell=[_error(line) for line in lines.to_dict("records")])
     cells = lines.pivot(index="engine", columns="level", values="cell")
-    cells = cells.reindex(index=[*TITLES], columns=[OWN_STEP, AT_ONCE]).fillna("–")
+    cells = cells.reindex(index=[*TITLES], columns=[OWN_STEP, AT_ONCE], fill_value="–")
     rows = [[TITLES[name], *line] for name, *line in cells.itertuples()]
     return ["engine", f"after {REST_S:g} s at rest", "shaken at once"], rows
 
