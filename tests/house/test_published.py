@@ -69,7 +69,9 @@ def test_nothing_is_computed_again_in_a_published_folder(name, tmp_path):
 
 
 FOLLOWING = {
-    "scenes": lambda found: scenes.tabulate(pd.concat([found[it] for it in scenes.LABELS if it in found])),
+    "scenes": lambda found: scenes.tabulate(
+        pd.concat([found[name] for name in scenes.LABELS if name in found])
+    ),
     "restitution": lambda found: restitution.tabulate(
         found["restitution"].assign(source="", outcome="", message="")
     ),
