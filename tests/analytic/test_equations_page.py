@@ -21,7 +21,7 @@ SAID = {
     r"exceeds it by a part (1e-\d+) lifts": rest.EQUAL,
     r"where they last less than (1e-\d+)/p": rest.ZENO,
     r"until a part (1e-\d+) of the ratio": forces.REFINED,
-    r"moved by ±(1e-\d+) and": max(MOVES),
+    r"moved by ±(1e-\d+), ": max(MOVES),
     r"and ±(1e-\d+); infinite": min(map(abs, MOVES)),
     r"bounded (\d+) % of the errors": 100.0 * halving.BOUNDED,
 }

@@ -67,7 +67,7 @@ TRAPS = {
     # 1e6 N/m, whatever stands on it: a light block errs little, a heavy one sinks in
     "a contact is as stiff under a heavier block": (
         *("drake", {"preset": AT_REST, "density": 10.0}, 0.02),
-        *({"density": 1000.0}, 0.1),
+        *({"density": 1000.0}, 0.05),
     ),
     # it goes by the normal force at the beginning of a step, of which dissipation makes much or
     # nothing; more friction does not hide that
@@ -83,7 +83,7 @@ TRAPS = {
     # two corners then correct twice what one would: weighting is what the library does itself
     "corrections without weights are made by each corner": (
         *("newton", {"preset": "default"}, 0.01),
-        *({"weighting": False}, 0.05),
+        *({"weighting": False}, 0.02),
     ),
     # the more of it the shorter the step
     "a depth that is corrected at once is noise": (

@@ -45,7 +45,7 @@ def test_each_block_has_its_answers_and_its_margin(place, capsys):
     outcomes = {name: strong.loc[name, "outcome"].tolist() for name in ("B", "C")}
     assert outcomes == {
         "B": ["slid", "slides first", "slid"],
-        "C": ["slides first", "slides first", "rocked"],
+        "C": ["slides first", "slides first", "overturned"],
     }
     why = {name: set(group) for name, group in rows.groupby("name")["no_margin"]}
     assert why == {"A": {""}, "B": {"slides"}, "C": {"slides first"}, "nan": {""}}

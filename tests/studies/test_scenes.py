@@ -66,7 +66,7 @@ def test_the_finding_takes_the_worst_engine_of_the_best_presets():
         "source": ["exact", "mujoco:default", "mujoco:landing", "box2d:default"],
         "max_error": [0.0, 0.5, 1e-5, 0.2], "wrong": [0, 3, 0, 1],
     })  # fmt: skip
-    names = ("random-frame-summary", "random-slide-summary", "slide-summary")
+    names = ("random-frame-summary", "random-slide-summary", "frame-summary", "slide-summary")
     none = dict.fromkeys(names, pd.DataFrame())
     words = finding(none | {"random-frame-summary": frames})
     assert "20 %" in words and "1 outcomes" in words and "50 %" not in words

@@ -80,4 +80,4 @@ def test_the_commands_of_the_page_ask_what_it_shows(source, capsys, tmp_path):
     assert (found["source"], found["peak_ratio"]) == (source, pytest.approx(peak, rel=1e-9))
     for line in export:
         assert run(line.replace("DIR", str(tmp_path)).split()[1:]) == 0
-        assert f"{peak:.9g}" in capsys.readouterr().out
+        assert f"{peak:.12g}" in capsys.readouterr().out
