@@ -161,7 +161,7 @@ def test_a_frame_is_compared(capsys):
 
 @pytest.mark.slow
 def test_a_frame_is_followed_as_long_by_every_command():
-    """DART's and Box2D's columns part by 0.7 and 0.5 of alpha after the first turn."""
+    """Columns part by 0.4 of alpha: DART's in the motion, Box2D's when their peak is over."""
     frame = RockingFrame(width=0.5, height=1.5, columns=3, load=2.0)
     pulse = SinePulse.in_g(0.5, omega=9.0, half_cycles=2)
     sources = ["exact", "dart:tuned", "box2d:tuned"]
@@ -171,11 +171,10 @@ def test_a_frame_is_followed_as_long_by_every_command():
     for job in asked:
         row, alone = measure(job), summary(respond(job.source, frame, pulse))
         others = alone, compared.loc[job.source]
-        for name in ("outcome", "message"):
-            assert row[name] == others[0][name] == others[1][name]
+        assert row["outcome"] == others[0]["outcome"] == others[1]["outcome"]
         peaks = [other["peak_ratio"] for other in others]
         assert peaks == pytest.approx([row["peak_ratio"]] * 2, rel=1e-12, nan_ok=True)
-    assert row["reason"] == "PARTED"
+        assert (row["reason"] == "PARTED") == (job.source == "dart:tuned")
 
 
 def test_a_floor_that_lags_has_a_column_of_its_own(capsys):
