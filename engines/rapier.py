@@ -399,7 +399,7 @@ FACTORS = (
     factor("recycling", traps={"tuned": RECYCLED}, name="contact recycling"),
     ASLEEP,
     factor("locked_aside", level("y locked", trap=FRICTIONLESS, locked_aside=True), name="locks"),
-    factor("stabilization"),
+    factor("stabilization", traps={"default": "without it a pivot slides away"}),
     factor("substeps"),
     Factor(
         "iterations",

@@ -118,6 +118,8 @@ DEAR = ("pymunk:tuned", "newton:tuned", "drake:error-controlled")
 """They take as long as all the others together; their engines' other presets stand for them."""
 DRAGGED = "pybullet:default"
 """Its damping of 0.04, in the world's frame, drags a block on a floor of 9 m/s."""
+SUNK = "pymunk:default"
+"""Its block sinks in by 12 mm as it rests, never lifts by as much, and is called at rest."""
 
 
 def missing(name):
@@ -159,7 +161,7 @@ def test_every_source_takes_a_record(name):
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=[pytest.mark.xfail(strict=True)] * (name == DRAGGED))
+        pytest.param(name, marks=[pytest.mark.xfail(strict=True)] * (name in (DRAGGED, SUNK)))
         for name in EACH
         if not missing(name)
     ],
