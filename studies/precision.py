@@ -99,7 +99,7 @@ def methods_of(sources: Iterable[str]) -> dict[str, Method]:
             if use.name == "tuned" and use.takes(iterations=1):
                 values = (2.0, 5.0, 10.0, 50.0, 200.0)
                 method = Method(source, "iterations", values, {"step": 1e-3}, own=True)
-                iterated[f"{engine} fixed, iterations"] = method
+                iterated[f"{engine} tuned, iterations"] = method
     return found | iterated
 
 
