@@ -373,8 +373,8 @@ class Scene:
 
         No turning point after the first one after the motion is larger where energy falls, which is
         not so of columns that part. Of one block it is: 8/p more change no outcome of 200 of the
-        paper's cases with the defaults of six engines and the tuned and landing presets of three,
-        and no peak by more than 4e-8 of alpha.
+        paper's cases with the defaults of six engines, two tuned presets and three that land, and
+        no peak by more than 4e-8 of alpha.
         """
         if self.duration is not None:
             return self.duration

@@ -33,7 +33,7 @@ from studies.kit.scene_options import Height, Width, block_of
 from studies.kit.store import check
 from studies.kit.study import Figures, Study, Tables
 from studies.measures import published as known
-from studies.measures.costs import STEPPED, cheapest_kept
+from studies.measures.costs import RETIRED, STEPPED, cheapest_kept
 from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.presets import look_of, uses_of
 from studies.measures.published import PUBLISHED, TARGETS, options_at
@@ -92,7 +92,7 @@ def command(
             written, note = seen.write(tables["symptoms"], block, friction), seen.HALVES
         else:
             tables = {"advice": find(asked, error, block)}
-            written, note = write(tables["advice"], block, friction), f"{STEPPED} {note}"
+            written, note = write(tables["advice"], block, friction), f"{STEPPED} {RETIRED} {note}"
         alone = "With one --engine its settings are written out, too, in the library's words."
         details = list(written) if len(asked) == 1 else [alone]
     if out is None:

@@ -214,6 +214,8 @@ class Store:
             **({"also": self._taken} if self._taken else {}),
         }
         record = {"study": self.study, **versions(before), "git": commit(), "machine": machine()}
+        if not self._computed:  # its times are of where its rows were computed
+            record["machine"] = before.get("machine", record["machine"])
         runs = [*before.get("runs", ()), run]
         write_record(self.folder, {**record, "made": makers, "runs": runs})
 

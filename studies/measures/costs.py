@@ -22,7 +22,11 @@ OUTDATED = (
     "The published times of `default`, `default-at-rest` and `recommended`, and all of PyBullet's "
     "and pymunk's, are of a slower machine and beside other work: up to three times too long."
 )
-"""Said beside them until they are measured again."""
+RETIRED = (
+    "PyBullet's times here, but for `default` and `recommended`, are those of a retired compiled "
+    "loop, shorter than today's."
+)
+"""Said beside times of the paper's cases, and of others, until they are measured again."""
 
 EXACT = "Taylor series"
 """The method to whose time the others are compared."""

@@ -20,7 +20,7 @@ from studies.kit.jobs import Job, Question, ask
 from studies.kit.say import capital, duration, part
 from studies.kit.store import check, versions, write_record
 from studies.kit.tables import read_table, tables_of, write_table, write_text
-from studies.measures.costs import OUTDATED, STEPPED
+from studies.measures.costs import OUTDATED, RETIRED, STEPPED
 from studies.measures.history import samples
 from studies.measures.presets import in_words
 from studies.measures.published import dictionary
@@ -125,7 +125,7 @@ def pages(root: Path) -> dict[Path, str]:
         "verdict": SWEEP.finding(SWEEP.read(published / "presets")),
         "chapters": {title: parts for title, parts in chapters.items() if parts},
         **{"made": facts.made(published), "presets": facts.presets(published)},
-        **{"OUTDATED": OUTDATED, "STEPPED": STEPPED, "TROUBLES": TROUBLES},
+        **{"OUTDATED": OUTDATED, "RETIRED": RETIRED, "STEPPED": STEPPED, "TROUBLES": TROUBLES},
         **{"WORDS": WORDS, "MEANINGS": MEANINGS, "REST_S": REST_S},
     }
     return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {
