@@ -40,12 +40,15 @@ def filled(folder, jobs=JOBS, measure=answer, also=(), table=""):
     return rows, json.loads((folder / "provenance.json").read_text())["runs"][-1]["computed"]
 
 
-def test_a_finished_folder_computes_nothing_and_a_new_job_alone(tmp_path):
+def test_a_finished_folder_computes_nothing_and_a_new_job_alone(tmp_path, monkeypatch):
     rows, computed = filled(tmp_path, JOBS[:2])
     assert computed == 2
     again, computed = filled(tmp_path, JOBS)
     assert (again[:2], computed) == (rows, 2)
+    here = store.provenance_of(tmp_path)["machine"]
+    monkeypatch.setattr(store, "machine", lambda: {"cpu": "another"})
     assert filled(tmp_path)[1] == 0
+    assert store.provenance_of(tmp_path)["machine"] == here
 
 
 def test_a_failure_is_kept_but_one_of_its_process_is_tried_again(tmp_path, monkeypatch):
