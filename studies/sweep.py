@@ -9,11 +9,12 @@ from typing import Annotated
 import pandas as pd
 from cyclopts import Parameter
 
+from engines.declaration import BEST
 from studies.cases.paper import sweep_cases
 from studies.kit.arguments import figures as some_figures
 from studies.kit.jobs import Job, Question
 from studies.kit.options import EffortOptions
-from studies.kit.say import capital, out_of, part
+from studies.kit.say import capital, listed, out_of, part
 from studies.kit.study import Figures, Study, Tables
 from studies.measures.claims import claim, table_of
 from studies.measures.differences import summarize, with_reference
@@ -87,22 +88,19 @@ def preset_table(lines: pd.DataFrame) -> pd.DataFrame:
 
 
 def finding(tables: Tables) -> str:
-    """Say what the best preset of the engines predicts, or else what the linearizations do."""
+    """Say what engines predict with default, tuned and best settings, or what a model does."""
     lines = over_all(tables["summary"])
     presets = preset_table(lines)
     if len(presets):
-        order = in_order(presets["preset"])
-        first, best = (presets[presets["preset"] == order[end]] for end in (0, -1))
-        cases = best["cases"].iloc[0]
-        least = "" if first["right"].min() == cases else "at least "
-        words = f"engines predict {least}{out_of(first['right'].min(), cases)} outcomes"
-        if len(order) == 1:
-            peaks = f", and every peak within {part(best['max'].max())}"
-            return f"{capital(in_words(order[0]))}, {words}{peaks}."
-        right = out_of(best["right"].min(), cases).removesuffix(f" {cases:.0f}")
+        order, cases = in_order(presets["preset"]), presets["cases"].iloc[0]
+        ends = [name for name in order if name in (order[0], BEST, order[-1])]
+        known = presets.groupby("preset").agg({"right": "min", "max": "max"}).loc[ends]
+        least = ["all" if n == cases else f"at least {n}" for n in known["right"]]
+        words = listed(f"{n} {in_words(name)}" for n, name in zip(least, ends, strict=True))
+        errors = "error of a peak is" if len(ends) == 1 else "errors of a peak are"
         return (
-            f"{capital(in_words(order[0]))}, {words}; {in_words(order[-1])}, "
-            f"{right.removesuffix(' of')}, and peaks within {part(best['max'].max())}."
+            f"Engines predict, of {cases} outcomes, {words}; the largest {errors} "
+            f"{listed(map(part, known['max']))}."
         )
     others = lines[lines["source"] != "exact"].sort_values("agree", kind="stable")
     if others.empty:

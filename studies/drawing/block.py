@@ -14,7 +14,8 @@ from analytic.block import RigidBlock
 from analytic.motion import FloatArray
 from engines.scene import System, layout_of
 from studies.drawing.styles import full_name, style_of
-from studies.kit.say import power
+from studies.kit.say import signed
+from studies.measures.presets import is_engine, look_of, preset_of
 
 INK, SOFT, GROUND, GHOST = "#1b1b1b", "#666666", "#d9d9d4", "#c9c9c9"
 MAGNIFIED = 2.5
@@ -59,8 +60,7 @@ def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> 
         for ratio, look in looks:
             theta = np.clip(MAGNIFIED * ratio * block.alpha, -0.5 * math.pi, 0.5 * math.pi)
             axes.add_patch(Polygon(outlines(block, float(theta))[0], **look))
-        title = "Housner's linearization" if source == "housner" else full_name(source)
-        axes.set_title(title, fontsize=10, fontweight="bold")
+        axes.set_title(_title(source), fontsize=10, fontweight="bold")
         axes.text(0.5, -0.03, _verdict(line), transform=axes.transAxes, ha="center", va="top",
                   fontsize=11)  # fmt: skip
     axes = lower.subplots()
@@ -80,23 +80,21 @@ def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> 
 
 
 def _verdict(line: dict[Any, Any]) -> str:
-    error = float(line["error"])
-    if line["outcome"] != "rocked":
-        return str(line["outcome"])
-    if abs(error) < 1e-3:
-        return f"peak within {power(abs(error))}"
-    return f"peak {error:+.0%}".replace("-", "−").replace("%", " %")
+    return f"peak {signed(line['error'])}" if line["outcome"] == "rocked" else str(line["outcome"])
+
+
+def _title(source: str) -> str:
+    """Return the name of a source on this picture, whose floors are all at rest."""
+    if source == "housner":
+        return "Housner's linearization"
+    return full_name(source).removesuffix(", floor at rest")
 
 
 def _look(source: str) -> dict[str, Any]:
-    """Return how a history is drawn: the exact one as a band on which landing steps lie."""
-    style = style_of(source)
-    look = {"color": style.colour, "linewidth": 1.7, "label": full_name(source)}
+    """Return how a history is drawn: the exact one as a band on which tuned ones lie."""
+    look = {"color": style_of(source).colour, "linewidth": 1.7, "label": _title(source)}
     if source == "exact":
         return look | {"color": GHOST, "linewidth": 7.0, "label": "exact", "zorder": 1}
-    if not style.marker:
-        return look | {"linestyle": "--", "label": "Housner"}
-    if ":" in source:
-        return look
-    every = {"markevery": (0 if style.marker == "o" else 8, 16), "markerfacecolor": "none"}
-    return {**look, "linestyle": "none", "marker": style.marker, "markersize": 5.0, **every}
+    if not is_engine(source):
+        return look | {"linestyle": "--"}
+    return look | {"linestyle": look_of(preset_of(source)).line}

@@ -93,14 +93,19 @@ def power(value: float) -> str:
 
 
 def part(value: float) -> str:
-    """Return a part of a whole: in per cent from a thousandth on, as a power of ten below."""
+    """Return a part of a whole: in per cent from a millionth on, as a power of ten below."""
     if not math.isfinite(value):
         return "without bound" if math.isinf(value) else "-"
-    if abs(value) < 1e-3:
+    if abs(value) < 1e-6:
         return power(value)
     if 0.99 < value < 1.0:
         return f"{math.floor(1e3 * value) / 10.0:.1f} %"  # not all of it
     return f"{100.0 * value:.0f} %" if abs(value) >= 0.1 else f"{100.0 * value:.2g} %"
+
+
+def signed(value: float) -> str:
+    """Return a relative error in per cent with its sign: "+24 %", "−0.012 %"."""
+    return ("−" if value < 0.0 else "+") + part(abs(value))
 
 
 def out_of(count: float, total: float) -> str:

@@ -24,16 +24,16 @@ class Look:
 
 
 PRESETS = {
-    "default": Look("as their documentation shows them", "as documented", "#D55E00", ":", "full"),
-    AT_REST: Look("as documented but on a base at rest", "base at rest", "#E69F00", ":"),
-    RECOMMENDED: Look(
-        "as their documentation recommends", "as recommended", "#56B4E9", "-.", "bottom"
+    "default": Look("with default settings", "default", "#D55E00", ":", "full"),
+    AT_REST: Look(
+        "with default settings and a floor at rest", "default, floor at rest", "#E69F00", ":"
     ),
-    "tuned": Look("with a tuned contact and a fixed step", "fixed step", "#0072B2", "--", "left"),
+    RECOMMENDED: Look("with recommended settings", "recommended", "#56B4E9", "-.", "bottom"),
+    "tuned": Look("with tuned settings", "tuned", "#0072B2", "--", "left"),
     "error-controlled": Look(
-        "with the engine's own error-controlled steps", "its own steps", "#CC79A7", "-.", "bottom"
+        "with error-controlled steps", "error-controlled", "#CC79A7", "-.", "bottom"
     ),
-    "landing": Look("with steps that land on impacts", "landing steps", "#009E73"),
+    "landing": Look("with landing steps", "landing", "#009E73"),
 }
 """Preset -> how it is named and drawn, from the libraries' own to the best there is."""
 

@@ -29,7 +29,6 @@ from studies.kit.say import capital, duration, listed, part
 from studies.kit.store import engines_of, provenance_of, whole_runs
 from studies.kit.tables import table_in
 from studies.measures.costs import cost_text
-from studies.measures.presets import in_order, look_of
 from studies.measures.wrongness import KINDS
 from studies.sweep import over_all, preset_table
 
@@ -53,20 +52,33 @@ def models(published: Path) -> dict[str, Line]:
     return {str(line["source"]): line for line in lines.to_dict("records")}
 
 
-def by_engine(published: Path) -> Table:
-    """Return rows for each engine: as documented, so on a base at rest, and its best preset."""
+def by_engine(published: Path) -> list[list[str]]:
+    """Return the cells of the README's table, a row for each engine.
+
+    They are wrong outcomes, median error and its share of theta_cr with default settings, on a
+    moving floor and on one at rest; wrong outcomes, largest error and time of the tuned preset;
+    largest error and time of landing, or of the engine's own steps.
+    """
     rows = []
     for name, lines in presets(published).groupby("engine", sort=False):
-        order = in_order(lines["preset"])
-        for line in lines.set_index("preset").loc[order].reset_index().to_dict("records"):
-            if line["preset"] in (order[0], AT_REST, order[-1]):
-                wrong = str(sum(line[kind] for kind in KINDS) or "")
-                cells = [part(line["median"]), part(line["share"]), duration(line["ms"] / 1e3)]
-                rows.append(
-                    [f"**{TITLES[str(name)]}**", look_of(line["preset"]).short, wrong, *cells]
-                )
-    heads = ["engine", "settings", "wrong outcomes", "error", "share of θcr", "run time"]
-    return heads, once(rows)
+        known = {str(line["preset"]): line for line in lines.to_dict("records")}
+        cells = [f"<b>{TITLES[str(name)]}</b>"]
+        for preset in (DEFAULT, AT_REST):
+            line = known[preset]
+            cells += [_wrong(line), part(line["median"]), part(line["share"])]
+        tuned, best = known["tuned"], ENGINES[str(name)].best
+        cells += [_wrong(tuned), part(tuned["max"]), duration(tuned["ms"] / 1e3)]
+        if best.name == "tuned":
+            cells += ["–", "–"]
+        else:
+            line, own = known[best.name], "" if best.stepping is Stepping.LANDING else "¹"
+            cells += [part(line["max"]) + own, duration(line["ms"] / 1e3)]
+        rows.append(cells)
+    return rows
+
+
+def _wrong(line: Line) -> str:
+    return str(sum(line[kind] for kind in KINDS))
 
 
 def compared(published: Path) -> dict[str, int]:
