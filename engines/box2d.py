@@ -11,23 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import (
-    ASLEEP,
-    Citation,
-    Engine,
-    Factor,
-    Help,
-    Precision,
-    Preset,
-    Stepping,
-    factor,
-    level,
-    moving_base,
-)
-from engines.parts import NO_JAM, Counted, fall, floor_reach, imported, iterations_for, returned
+from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
+from engines.factors import ASLEEP, Factor, factor, level, moving_base
+from engines.parts import NO_JAM, fall, imported, iterations_for, returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
+from engines.shapes import Counted, floor_reach
 from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
 
 DEEPER = 3.0

@@ -13,32 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import (
-    BOTH,
-    DEFAULT,
-    Citation,
-    Engine,
-    Factor,
-    Help,
-    Preset,
-    Stepping,
-    factor,
-    level,
-    moving_base,
-)
-from engines.parts import (
-    Point,
-    counted,
-    fall,
-    floor_half_size,
-    half_size,
-    imported,
-    returned,
-    touching_spheres,
-)
+from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.factors import BOTH, DEFAULT, Factor, factor, level, moving_base
+from engines.parts import fall, imported, returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import Scene
 from engines.settings import check, disagreement, one_of, setting
+from engines.shapes import Point, counted, floor_half_size, half_size, touching_spheres
 from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
 
 DETECTORS = {

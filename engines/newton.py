@@ -14,22 +14,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engines.declaration import (
-    BOTH,
-    DEFAULT,
-    Citation,
-    Engine,
-    Factor,
-    Precision,
-    Preset,
-    factor,
-    level,
-    moving_base,
-)
-from engines.parts import NO_JAM, half_size, imported, silence, touching_spheres
+from engines.declaration import Citation, Engine, Precision, Preset
+from engines.factors import BOTH, DEFAULT, Factor, factor, level, moving_base
+from engines.parts import NO_JAM, imported, silence
 from engines.run.export import Notes, Script
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, setting
+from engines.shapes import half_size, touching_spheres
 from engines.world import FloatArray, Moment, Pose, Step
 
 MOST_CONTACTS = 4, 16

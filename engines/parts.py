@@ -1,7 +1,6 @@
-"""What adapters share: shapes of block and base, units, a pivot's velocity, silence."""
+"""What adapters share: fall, iterations, a pivot's velocity, silence."""
 
 import contextlib
-import itertools
 import math
 import os
 import sys
@@ -10,12 +9,8 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-import numpy as np
-
-from engines.scene import LOWER, Body, Scene
+from engines.scene import Scene
 from engines.world import ContactPhase, Step
-
-Point = tuple[float, float, float]
 
 NO_JAM = 1.3
 """Friction just below 4/3, from which on a corner of a homogeneous block may jam (Painlevé's
@@ -23,13 +18,6 @@ paradox): a solver by impulses finds no force then, and lets the corner through 
 
 MOST_ITERATIONS = 2**31 - 1
 """What fits into a library's own integer."""
-
-FLOOR_HEIGHTS = 10.0
-"""To where a base that is a box goes on beyond what stands on it, in heights and depths of that.
-
-In single precision it decides contacts: with 100 Rapier's default errs by 16.6 % in the median of
-60 of the paper's cases, and its recommended settings by 6.3 %; with 10 by 15.6 and 3.6 %.
-"""
 
 
 def fall(scene: Scene, dt_s: float) -> float:
@@ -46,85 +34,6 @@ def iterations_for(scene: Scene, iterations: int | None, sweeps: float | None) -
     if iterations is not None or sweeps is None:
         return iterations
     return min(math.ceil(sweeps / math.sin(scene.system.alpha) ** 2), MOST_ITERATIONS)
-
-
-def half_size(body: Body) -> Point:
-    """Return half of a body's size [m] along x, y and z."""
-    return (0.5 * body.width, 0.5 * body.depth, 0.5 * body.height)
-
-
-def corner_spheres(body: Body, radius: float, *, planar: bool, face: int = LOWER) -> list[Point]:
-    """Return the centres [m] of spheres at the corners of a body's face, those at -x first.
-
-    They are relative to the body's centre: two in the middle plane (planar), or four at the edges.
-    """
-    x, y, z = half_size(body)
-    depths = (0.0,) if planar else (-y, y)
-    return [(side, depth, face * (z - radius)) for side in (-x, x) for depth in depths]
-
-
-def touching_spheres(scene: Scene, body: int, radius: float, *, planar: bool) -> list[Point]:
-    """Return the `corner_spheres` at all corners by which a body, of a number, touches others."""
-    return [
-        corner
-        for face in scene.layout.faces(body)
-        for corner in corner_spheres(scene.bodies[body], radius, planar=planar, face=face)
-    ]
-
-
-def hull_points(body: Body) -> list[Point]:
-    """Return the eight corners of a body [m], relative to its centre."""
-    x, y, z = half_size(body)
-    return list(itertools.product((-x, x), (-y, y), (-z, z)))
-
-
-def floor_reach(scene: Scene) -> float:
-    """Return half of the length [m] of a base; a block that slides stays on it.
-
-    At most it is as fast as it began, and as the base's velocity ever differs from another: it goes
-    no further in the motion, and after it as friction lets it. What is thrown may go twice as far.
-    """
-    farthest = max(abs(body.home[0]) for body in scene.layout.bodies)
-    far = FLOOR_HEIGHTS * scene.bodies[0].height + farthest
-    if scene.layout.rocking or not scene.friction:
-        return far
-    (place, velocity), end = scene.start, scene.motion.duration
-    speed = abs(velocity) + float(np.ptp(scene.motion.velocity(np.linspace(0.0, end, 1000))))
-    slide = speed * (end + 0.5 * speed / (scene.friction * scene.system.gravity))
-    return max(far, 2.0 * (abs(place) + slide))
-
-
-def floor_half_size(scene: Scene) -> Point:
-    """Return half of the size [m] of a base that is a box; its top is at its own half height."""
-    return floor_reach(scene), FLOOR_HEIGHTS * scene.bodies[0].depth, scene.bodies[0].height
-
-
-class Counted:
-    """Settings of an engine that need not count lengths in metres from the base.
-
-    In single precision it matters: a rounding of the pivot's height is a velocity in a short step.
-    units are those of length in the height of the block, None counting in metres; heights are
-    centred that are counted from where the block's centre is at rest.
-    """
-
-    __slots__ = ()
-
-    units: float | None
-    centred: bool
-
-    def unit_of(self, scene: Scene) -> float:
-        """Return the units of length in a metre."""
-        return 1.0 if self.units is None else self.units / scene.system.height
-
-    def sunk_of(self, scene: Scene) -> float:
-        """Return how far below the origin the base is, in units of length."""
-        return 0.5 * scene.system.height * self.unit_of(scene) if self.centred else 0.0
-
-
-def counted(lengths: Point, unit: float) -> Point:
-    """Return lengths [m] in an engine's units, of which there are so many in a metre."""
-    x, y, z = lengths
-    return x * unit, y * unit, z * unit
 
 
 MOST_RETURNED = 2.0

@@ -12,33 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import (
-    BOTH,
-    DEFAULT,
-    Citation,
-    Engine,
-    Factor,
-    Help,
-    Precision,
-    Preset,
-    Stepping,
-    factor,
-    level,
-    moving_base,
-)
-from engines.parts import (
-    NO_JAM,
-    Counted,
-    counted,
-    floor_half_size,
-    half_size,
-    imported,
-    returned,
-    touching_spheres,
-)
+from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
+from engines.factors import BOTH, DEFAULT, Factor, factor, level, moving_base
+from engines.parts import NO_JAM, imported, returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, setting
+from engines.shapes import Counted, counted, floor_half_size, half_size, touching_spheres
 from engines.world import FloatArray, Moment, Pose, Step
 
 MOST = 255

@@ -12,21 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import (
-    Citation,
-    Engine,
-    Factor,
-    Help,
-    Preset,
-    Stepping,
-    factor,
-    level,
-    moving_base,
-)
-from engines.parts import NO_JAM, fall, floor_reach, imported, iterations_for, returned
+from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.factors import Factor, factor, level, moving_base
+from engines.parts import NO_JAM, fall, imported, iterations_for, returned
 from engines.run.export import Notes, Script, constant, scaled
 from engines.scene import BASE, Body, Scene
 from engines.settings import check, disagreement, setting
+from engines.shapes import floor_reach
 from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
 
 UNIT_S = 1e-3

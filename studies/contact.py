@@ -17,7 +17,8 @@ from analytic.block import Rocker
 from analytic.frame import RockingFrame
 from analytic.response import Outcome
 from engines import ENGINES, core_engines
-from engines.declaration import BEST, BY_DEFAULT, DEFAULT, OWN_STEPS, Stepping
+from engines.declaration import Stepping
+from engines.factors import BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
 from engines.scene import Scene, free_rocking_window
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.paper import Case, chosen_cases

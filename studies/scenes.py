@@ -16,7 +16,7 @@ from analytic import Delayed, Record, RockingFrame, SinePulse, SlidingBlock, Sti
 from analytic.block import GRAVITY
 from analytic.response import Outcome, Reason, Response
 from analytic.simulate import simulate
-from engines.declaration import DEFAULT
+from engines.factors import DEFAULT
 from engines.run.run import LAG
 from studies.cases.drawn import calm_frames, slides
 from studies.kit.jobs import Job, Question, Row, ask, summary

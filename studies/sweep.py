@@ -9,7 +9,7 @@ from typing import Annotated
 import pandas as pd
 from cyclopts import Parameter
 
-from engines.declaration import BEST
+from engines.factors import BEST
 from studies.cases.paper import sweep_cases
 from studies.kit.arguments import figures as some_figures
 from studies.kit.jobs import Job, Question

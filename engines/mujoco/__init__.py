@@ -3,19 +3,8 @@
 from dataclasses import replace
 from typing import Any
 
-from engines.declaration import (
-    BOTH,
-    DEFAULT,
-    Citation,
-    Engine,
-    Factor,
-    Help,
-    Preset,
-    Stepping,
-    factor,
-    level,
-    moving_base,
-)
+from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.factors import BOTH, DEFAULT, Factor, factor, level, moving_base
 from engines.mujoco.build import MujocoSettings, MujocoWorld, script
 
 TUNED = MujocoSettings(

@@ -21,10 +21,10 @@ from engines.mujoco.contact import (
     prepare,
     read,
 )
-from engines.parts import corner_spheres, floor_half_size, half_size, hull_points
 from engines.run.look import compiled, records
 from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
+from engines.shapes import corner_spheres, floor_half_size, half_size, hull_points
 from engines.world import FloatArray, Moment, Pose, Script, Step
 
 NARROWEST_CONE, SOFT = 0.1, 0.5

@@ -3,20 +3,8 @@
 from dataclasses import replace
 from typing import Any
 
-from engines.declaration import (
-    BEST,
-    BOTH,
-    DEFAULT,
-    Citation,
-    Engine,
-    Factor,
-    Help,
-    Preset,
-    Stepping,
-    factor,
-    level,
-    moving_base,
-)
+from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.factors import BEST, BOTH, DEFAULT, Factor, factor, level, moving_base
 from engines.pybullet.build import LIBRARY_STEP_S, BulletSettings, BulletWorld, script
 
 TUNED = BulletSettings(

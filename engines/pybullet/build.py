@@ -9,18 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from engines.parts import (
-    floor_half_size,
-    half_size,
-    hull_points,
-    imported,
-    iterations_for,
-    silence,
-    touching_spheres,
-)
+from engines.parts import imported, iterations_for, silence
 from engines.run.export import Notes
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, setting
+from engines.shapes import floor_half_size, half_size, hull_points, touching_spheres
 from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
 
 LIBRARY_STEP_S = 1.0 / 240.0

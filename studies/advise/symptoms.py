@@ -13,7 +13,7 @@ import pandas as pd
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES
-from engines.declaration import BEST, DEFAULT, OWN_STEPS
+from engines.factors import BEST, DEFAULT, OWN_STEPS
 from studies.cases.refusal import BadInputError
 from studies.cases.variants import variants
 from studies.kit.say import WIDTH, out_of

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from engines import ENGINES
-from engines.declaration import (
+from engines.declaration import AT_REST
+from engines.factors import (
     AS_BEST,
-    AT_REST,
     BEST,
     BOTH,
     BY_DEFAULT,

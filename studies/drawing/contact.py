@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engines.declaration import BY_DEFAULT, OWN_STEP
+from engines.factors import BY_DEFAULT, OWN_STEP
 from studies.drawing.facets import dot, error_scale, key, panels, preset_dots, rows, strip_beyond
 from studies.drawing.styles import title_of
 from studies.kit.say import capital

@@ -11,17 +11,8 @@ from typing import Any, TypeAlias
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import (
-    AT_REST,
-    BEST,
-    DEFAULT,
-    LEFT_OUT,
-    OWN_STEP,
-    OWN_STEPS,
-    REST_S,
-    Help,
-    Stepping,
-)
+from engines.declaration import AT_REST, REST_S, Help, Stepping
+from engines.factors import BEST, DEFAULT, LEFT_OUT, OWN_STEP, OWN_STEPS
 from engines.registry import OWN
 from studies.cases.variants import AT_ONCE
 from studies.kit.identity import NOT_INSTALLED

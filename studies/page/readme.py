@@ -13,7 +13,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES
-from engines.declaration import AT_REST, BEST, REST_S
+from engines.declaration import AT_REST, REST_S
+from engines.factors import BEST
 from engines.scene import free_rocking_window
 from engines.troubles import TROUBLES
 from studies.cases.refusal import BadInputError

@@ -8,7 +8,7 @@ from declared import run
 
 from analytic.response import Outcome, Reason
 from engines import ENGINES, Scene, installed_engines
-from engines.declaration import BEST, OWN_STEPS
+from engines.factors import BEST, OWN_STEPS
 from engines.mujoco import TUNED
 from engines.mujoco.build import MujocoSettings
 from engines.pybullet.build import BulletSettings, BulletWorld

@@ -10,7 +10,8 @@ import math
 import operator
 from dataclasses import dataclass
 
-from engines.declaration import Citation, Engine, Help, Preset, Stepping, factor, level
+from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.factors import factor, level
 from engines.settings import check, setting
 from engines.world import Moment
 

@@ -9,7 +9,8 @@ import pytest
 from given import BLOCK
 
 from engines import ENGINES
-from engines.declaration import AT_REST, DEFAULT, OWN_STEPS
+from engines.declaration import AT_REST
+from engines.factors import DEFAULT, OWN_STEPS
 from studies.__main__ import run
 from studies.advise import find, keeps, why, write
 from studies.advise import symptoms as seen

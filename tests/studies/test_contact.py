@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from engines import ENGINES, installed_engines
-from engines.declaration import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
+from engines.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
 from studies import contact
 from studies.cases.paper import chosen_cases
 from studies.cases.variants import STILL, variants

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from commanding import PAGES, PROSE, PUBLISHED_PAGES, ROOT
 
-from engines.declaration import BEST, LEFT_OUT
+from engines.factors import BEST, LEFT_OUT
 from studies.page import facts, readme
 
 PUBLISHED = ROOT / readme.PUBLISHED
