@@ -38,7 +38,7 @@ def command(
     height: Height,
     excitation: Excitation = Excitation(),  # noqa: B008
     standing: Standing = Standing(),  # noqa: B008
-    step: Step | None = None,
+    p_dt: Step | None = None,
     yours: Yours = Yours(),  # noqa: B008
     time_limit: TimeLimit = 60.0,
 ) -> int:
@@ -50,24 +50,24 @@ def command(
     Parameters
     ----------
     engine
-        Name of an engine; after a colon its preset, one with equal steps, by default fixed.
+        Name of an engine; after a colon its preset, one with equal steps, by default tuned.
     out
         Folder for the files, a new or an empty one: block.py, ground.py and the model, where the
         library reads one.
-    step
-        p dt [-], the step in units of 1/p; by default the preset's.
+    p_dt
+        Step in units of 1/p; by default the preset's.
     time_limit
         Wall-clock time [s] after which the engine is given up.
     """
-    refuse_both(dt=yours.dt, step=step)
+    refuse_both(dt=yours.dt, p_dt=p_dt)
     source = source_of(engine)
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
     if out.exists() and any(out.iterdir()):
         raise BadInputError(f"--out is {str(out)!r}; it must be a new or an empty folder")
-    window = window_of(system, motion, step=step, dt=yours.dt)
+    window = window_of(system, motion, p_dt=p_dt, dt=yours.dt)
     case = Question(system=system, motion=motion, start=start, duration=window)
-    options = yours.options([source], system)[source] | ({} if step is None else {"step": step})
+    options = yours.options([source], system)[source] | ({} if p_dt is None else {"step": p_dt})
     name, _, preset = source.partition(":")
     scene = scene_of(system, motion, preset, start=start, duration=window, **options)
     questions = {"exact": {}, source: options}

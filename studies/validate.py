@@ -73,7 +73,7 @@ class Options(EffortOptions):
 
 def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
     """Return the jobs in the order of the table: case by case, source by source."""
-    refuse_both(dt=options.yours.dt, step=options.step)
+    refuse_both(dt=options.yours.dt, p_dt=options.p_dt)
     cases = options.cases or CASES[options.halves][quick]
     options.refuse_idle(sources)
     if options.halves:

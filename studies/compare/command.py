@@ -85,7 +85,7 @@ def command(
         refuse_given({"plot": plot}, "only where something rocks")
         if sources == DEFAULT_SOURCES:  # a block that slides has no linearization
             sources = ("exact", *core_sources())
-    refuse_both(dt=yours.dt, step=effort.step)
+    refuse_both(dt=yours.dt, p_dt=effort.p_dt)
     effort.refuse_idle(sources)
     words = "a block requires its full width and height [m]"
     width, height = required(words, width=width, height=height)
@@ -93,7 +93,7 @@ def command(
         check_file("--plot", plot, ".png", ".pdf", ".svg")
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
-    window = window_of(system, motion, duration, step=effort.step, dt=yours.dt)
+    window = window_of(system, motion, duration, p_dt=effort.p_dt, dt=yours.dt)
     times = np.linspace(0.0, window, 1501) if plot else None
     case = Question(system=system, motion=motion, start=start, duration=window, times=times)
     place = place_of(computing, at_once=True)

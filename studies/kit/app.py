@@ -15,7 +15,7 @@ import sys
 import threading
 from collections.abc import Mapping, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from studies.kit import say
 from studies.kit.postponed import postpone
@@ -23,6 +23,8 @@ from studies.kit.postponed import postpone
 if TYPE_CHECKING:
     from cyclopts import App, UnknownOptionError
 
+Groups: TypeAlias = Mapping[str, Mapping[str, str]]
+"""Title of a group in the help -> its commands, each with its purpose."""
 PLACES = {"compare": "compare.command", "report": "page.report", "readme": "page.readme"}
 """Command -> its module, where that has another name."""
 REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
@@ -30,8 +32,8 @@ REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
-def main(commands: Mapping[str, str]) -> None:
-    """Run the command that the arguments name, and exit; each has a line that says its purpose."""
+def main(groups: Groups) -> None:
+    """Run the command that the arguments name, and exit."""
     for number in ENDING:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _end)
@@ -39,7 +41,7 @@ def main(commands: Mapping[str, str]) -> None:
     gc.set_threshold(10_000)  # else a tenth of a short command's time goes into garbage collection
     settle_environment()
     say.prepare_streams()
-    code = run(commands, sys.argv[1:])
+    code = run(groups, sys.argv[1:])
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)
     say.flush()
@@ -66,10 +68,10 @@ def _on_lost(lost: sys.UnraisableHookArgs) -> None:
         sys.__unraisablehook__(lost)
 
 
-def run(commands: Mapping[str, str], arguments: list[str]) -> int:
+def run(groups: Groups, arguments: list[str]) -> int:
     """Run one command; return its exit code: 0 usable, 1 some rows failed, 2 bad input."""
     try:
-        code = _answer(commands, arguments)
+        code = _answer(groups, arguments)
         sys.stdout.flush()
     except KeyboardInterrupt as stop:
         kept = [each for each in stop.args if isinstance(each, str)]
@@ -96,9 +98,9 @@ def run(commands: Mapping[str, str], arguments: list[str]) -> int:
     return code
 
 
-def make_app(commands: Mapping[str, str], chosen: str = "") -> App:
+def make_app(groups: Groups, chosen: str = "") -> App:
     """Return the command line; the chosen command is loaded, others when they are asked for."""
-    from cyclopts import App, Parameter
+    from cyclopts import App, Group, Parameter
 
     def version() -> str:
         from studies.kit.store import project_version
@@ -114,16 +116,20 @@ def make_app(commands: Mapping[str, str], chosen: str = "") -> App:
         default_parameter=Parameter(negative=()),
         suppress_keyboard_interrupt=False,
     )
-    for name, purpose in commands.items():
-        module = f"studies.{PLACES.get(name, name)}"
-        if name == chosen:
-            app.command(import_module(module).command, name=name)
-        else:
-            app.command(f"{module}:command", name=name, help=purpose)
+    app.register_install_completion_command(add_to_startup=False)
+    for place, (title, commands) in enumerate(groups.items()):
+        group = Group(title, sort_key=place)
+        for number, (name, purpose) in enumerate(commands.items()):
+            module = f"studies.{PLACES.get(name, name)}"
+            shown: Any = {"group": group, "sort_key": number}
+            if name == chosen:
+                app.command(import_module(module).command, name=name, **shown)
+            else:
+                app.command(f"{module}:command", name=name, help=purpose, **shown)
     return app
 
 
-def _answer(commands: Mapping[str, str], arguments: Sequence[str]) -> int:
+def _answer(groups: Groups, arguments: Sequence[str]) -> int:
     from cyclopts import CycloptsError, UnknownOptionError
 
     postpone("pandas")
@@ -138,7 +144,7 @@ def _answer(commands: Mapping[str, str], arguments: Sequence[str]) -> int:
 
     try:
         with foreign.tried_apart():
-            code = make_app(commands, arguments[0] if arguments else "")(
+            code = make_app(groups, arguments[0] if arguments else "")(
                 arguments,
                 exit_on_error=False,
                 print_error=False,

@@ -75,26 +75,26 @@ class EffortOptions:
 
     Attributes
     ----------
-    step
-        p dt [-] of the solvers and engines, the step in units of 1/p; by default their own.
+    p_dt
+        Step of the solvers and engines in units of 1/p; by default their own.
     accuracy
         loose, standard or tight, for engines whose steps land on impacts; standard by default.
     """
 
-    step: Step | None = None
+    p_dt: Step | None = None
     accuracy: Annotated[Accuracy, one_of(Accuracy)] | None = None
 
     @property
     def own(self) -> bool:
         """Whether every source steps as it sees fit."""
-        return self.step is None and self.accuracy is None
+        return self.p_dt is None and self.accuracy is None
 
     def options(self, name: str) -> dict[str, Any]:
         """Return the options that this means for a source."""
         source = resolve(name)
         chosen: dict[str, Any] = {}
-        if self.step is not None and source.stepping:
-            chosen["step"] = self.step
+        if self.p_dt is not None and source.stepping:
+            chosen["step"] = self.p_dt
         if self.accuracy is not None and source.accurate:
             chosen["accuracy"] = self.accuracy
         return chosen
@@ -102,11 +102,11 @@ class EffortOptions:
     def refuse_idle(self, sources: Sequence[str]) -> None:
         """Refuse an option that none of the sources takes."""
         for name, taking, words in (
-            ("step", "stepping", "a solver or an engine"),
+            ("p-dt", "stepping", "a solver or an engine"),
             ("accuracy", "accurate", "an engine that chooses its steps"),
         ):
             taken = any(getattr(resolve(source), taking) for source in sources)
-            if (value := getattr(self, name)) is not None and not taken:
+            if (value := getattr(self, name.replace("-", "_"))) is not None and not taken:
                 raise BadInputError(f"--{name} is {value}; --sources must name {words}")
 
 
@@ -132,17 +132,19 @@ class Yours:
         asked = {name: resolve(name) for name in sources}
         idle = not any(source.engine for source in asked.values())
         if self.friction is not None and idle and not isinstance(system, SlidingBlock):
-            raise BadInputError(f"--friction is {self.friction:g}; it must come with an engine")
+            raise BadInputError(
+                f"--friction is {self.friction:g}; --sources must name at least one engine"
+            )
         if self.dt is not None and not any(source.stepping for source in asked.values()):
             words = "a solver or an engine that takes equal steps"
-            raise BadInputError(f"--dt is {self.dt:g}; it must come with {words}")
+            raise BadInputError(f"--dt is {self.dt:g}; --sources must name {words}")
         chosen: dict[str, dict[str, float]] = {name: {} for name in sources}
         for name, source in asked.items():
             if self.friction is not None and source.engine:
                 chosen[name]["friction"] = self.friction
             if self.dt is not None and source.accurate:
-                words = f"it must come with equal steps, and {name} takes"
-                raise BadInputError(f"--dt is {self.dt:g}; {words} {source.used.stepping.value}")
+                words = f"{name} takes {source.used.stepping.value}"
+                raise BadInputError(f"--dt is {self.dt:g}; its steps must be equal, but {words}")
             if self.dt is not None and source.stepping:
                 chosen[name]["step"] = self.dt * system.p
         return chosen

@@ -231,12 +231,12 @@ def window_of(
     motion: Motion,
     duration: float | None = None,
     *,
-    step: float | None = None,
+    p_dt: float | None = None,
     dt: float | None = None,
 ) -> float:
     """Return how long a block is watched [s]: as given, or the motion and 8/p.
 
-    What no computer sees the end of is refused, with a step p dt, or [s].
+    What no computer sees the end of is refused, with a step in units of 1/p, or [s].
     """
     if duration is not None and duration < motion.duration:
         least = f"the length of the motion, {motion.duration:.6g} s"
@@ -253,7 +253,7 @@ def window_of(
             f"{asked} must last at most {most_s:.4g} s, {MOST_TIME:g} times 1/p, "
             f"and the block is watched for {watched_s:.4g} s"
         )
-    for name, given, unit in (("step", step, 1.0 / block.p), ("dt", dt, 1.0)):
+    for name, given, unit in (("p-dt", p_dt, 1.0 / block.p), ("dt", dt, 1.0)):
         if given is not None and watched_s > MOST_STEPS * given * unit:
             smallest = watched_s / (MOST_STEPS * unit)
             raise BadInputError(

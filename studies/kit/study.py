@@ -29,6 +29,10 @@ Figures: TypeAlias = "Mapping[str, Figure]"
 """Figures by the names of their files."""
 
 
+SHARED = Parameter(show=False)
+"""What marks the options that `rocking help run` explains, once for all studies."""
+
+
 def _nothing(tables: Tables) -> Mapping[str, Any]:
     return {}
 
@@ -65,10 +69,10 @@ class Study:
         if self.options is not None:
             taken["options"] = (self.options, self.options())
         if self.sources:
-            taken["sources"] = (Annotated[tuple[str, ...], sources_option()], self.sources)
+            taken["sources"] = (Annotated[tuple[str, ...], SHARED, sources_option()], self.sources)
         if self.quick:
             taken["quick"] = (Annotated[bool, Parameter(help=self.quick)], False)
-        taken["running"] = (Running, Running())
+        taken["running"] = (Annotated[Running, SHARED], Running())
 
         def command(**given: Any) -> int:
             given = {name: value for name, (_, value) in taken.items()} | given
@@ -80,7 +84,9 @@ class Study:
             asked = asdict(*options) if options else {}
             return self.carry_out(out, jobs, running, **given, **asked)
 
-        command.__doc__ = f"{self.question}\n\n{self.help}"
+        shared = ["--sources"] * bool(self.sources) + ["--jobs --time-limit --cluster --also"]
+        folded = f"Options of every study (`rocking help run`): {' '.join(shared)}."
+        command.__doc__ = f"{self.question}\n\n{self.help}\n\n{folded}"
         command.__annotations__ = {name: hint for name, (hint, _) in taken.items()}
         command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
             [

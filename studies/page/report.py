@@ -69,7 +69,7 @@ def _prepare(out: Path, full: bool) -> None:
 def fill(part: Part, out: Path, full: bool) -> int:
     """Run the command of a part, without its words; return its exit code."""
     with contextlib.redirect_stdout(io.StringIO()):
-        code = app.run({part.name: ""}, part.words(out / part.folder, full))
+        code = app.run({"": {part.name: ""}}, part.words(out / part.folder, full))
     if code == 1:
         print(f"{part.folder}: some rows failed; the page names them", file=sys.stderr)
     return code

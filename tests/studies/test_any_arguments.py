@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from records import AT2
 
-from studies.__main__ import COMMANDS, run
+from studies.__main__ import COMMANDS, GROUPS, run
 from studies.kit import run as runs
 from studies.kit.app import make_app, settle_environment
 from studies.kit.store import FolderError
@@ -30,6 +30,7 @@ BEGINNINGS = {
     "animate": [(*CASE, "--out", "film.gif")],
     "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
     "doctor": [()],
+    "help": [()],
     "readme": [()],
 }
 """What stands before an option so that it matters, of commands that do not fill a folder."""
@@ -56,7 +57,7 @@ ODD = [
 
 def options_of(name):
     """Return the options of a command, as its own declaration names them."""
-    arguments = make_app(COMMANDS, name)[name].assemble_argument_collection()
+    arguments = make_app(GROUPS, name)[name].assemble_argument_collection()
     names = [argument.name for argument in arguments if argument.name.startswith("--")]
     assert names
     return names

@@ -236,7 +236,7 @@ def test_side_by_side_is_what_compare_tells(capsys):
     [
         ({"sources": []}, r"sources is \[\]; it must be a list of one name or more"),
         ({"sources": ["exat"]}, "source is 'exat', perhaps 'exact'; it must be one of exact"),
-        ({"sources": ["mujoco"], "dt": 0.002}, "^dt is 0.002; it must come with equal steps"),
+        ({"sources": ["mujoco"], "dt": 0.002}, "^dt is 0.002; its steps must be equal"),
         ({"sources": ["mujoco"], "friction": math.nan}, "friction is nan; it must be a finite"),
         ({"sources": ["exact"], "start": (0.1, 0.0, 0.0)}, "^start is .* must be theta"),
     ],

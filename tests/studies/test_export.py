@@ -127,7 +127,7 @@ def test_settings_stand_in_the_files_letter_by_letter(engine, preset):
 def test_the_command_writes_what_runs_and_does_not_write_over_it(
     engine, options, expected, tmp_path, capsys
 ):
-    asked = ["export", *CASE, *options.split(), "--engine", engine, "--step", "5e-4"]
+    asked = ["export", *CASE, *options.split(), "--engine", engine, "--p-dt", "5e-4"]
     assert rocking([*asked, "--out", str(tmp_path / "scene")]) == 0
     output = capsys.readouterr().out
     assert f"to expect: {expected}" in output

@@ -7,7 +7,7 @@ import tomllib
 import pytest
 from commanding import PROSE, ROOT
 
-from studies.__main__ import COMMANDS, run
+from studies.__main__ import COMMANDS, GROUPS, run
 from studies.kit.app import make_app
 from studies.page.chapters import PARTS
 
@@ -24,7 +24,7 @@ def commands(name):
 
 def taken(arguments):
     """Let the command line take arguments, all of them, without running anything."""
-    app = make_app(COMMANDS, arguments[0])
+    app = make_app(GROUPS, arguments[0])
     _, bound, ignored = app.parse_args(arguments, exit_on_error=False)
     assert bound.arguments and not ignored
 

@@ -56,7 +56,7 @@ compare CASE --sources mujuco | 'mujuco', perhaps 'mujoco'; it must be one of ex
 compare CASE --sources MuJoCo:tuned | 'MuJoCo:tuned', perhaps 'mujoco'
 compare CASE --sources hausner:tuned | source is 'hausner:tuned', perhaps 'housner'
 compare CASE --sources exact:tuned | 'exact:tuned'; it must be 'exact'
-compare CASE --sources exact --step 0.1 | --step is 0.1 | a solver or an engine
+compare CASE --sources exact --p-dt 0.1 | --p-dt is 0.1 | a solver or an engine
 compare CASE --sources mujoco:tuned --accuracy tight | --accuracy is tight | chooses its steps
 contact --out DIR --engines mujuco | --engines is 'mujuco', perhaps 'mujoco'
 export CASE --out DIR --engine mujuco:tuned | perhaps 'mujoco'
@@ -97,11 +97,11 @@ blocks list.csv --out DIR | --record requires an argument
 
 # a reader's own friction and step
 compare CASE --dt 0.002 | --dt is 0.002; | pybullet takes steps that land on impacts
-compare CASE --dt 0.002 --sources exact | --dt is 0.002; it must come with a solver
-compare CASE --friction 1 --sources rk4 | --friction is 1; it must come with an engine
+compare CASE --dt 0.002 --sources exact | --dt is 0.002; --sources must name a solver
+compare CASE --friction 1 --sources rk4 | --friction is 1; --sources must name at least one engine
 compare CASE --friction 99 --sources pybullet | friction is 99.0; it must be from 0 to
 compare CASE --dt 1e-12 --sources rk4 | --dt is 1e-12; it must be at least 3.6
-compare CASE --dt 0.01 --step 0.1 --sources rk4 | --dt is 0.01 and --step is 0.1; give one or the
+compare CASE --dt 0.01 --p-dt 0.1 --sources rk4 | --dt is 0.01 and --p-dt is 0.1; give one or the
 advise --engine pybullet --friction 99 | friction is 99.0; it must be from 0
 
 # other scenes, exported or shown
@@ -136,8 +136,8 @@ restitution --out DIR --engines drake | drake | no coefficient
 restitution --out DIR --quick | --quick
 validate --out DIR --halves --sources exact | 'exact'; with --halves it must be an engine
 validate --out DIR --halves --sources drake | steps that can be halved
-validate --out DIR --sources exact --step 0.1 | --sources must name a solver or an engine
-validate --out DIR --dt 0.01 --step 0.1 --sources mujoco:tuned | --dt is 0.01 and --step is 0.1
+validate --out DIR --sources exact --p-dt 0.1 | --sources must name a solver or an engine
+validate --out DIR --dt 0.01 --p-dt 0.1 --sources mujoco:tuned | --dt is 0.01 and --p-dt is 0.1
 validate --out DIR --scene slide | among block, frame
 validate --out DIR --seed -1 | --seed is '-1'
 
@@ -157,8 +157,8 @@ animate CASE --out /proc/film.gif | --out | written
 # more than a computer has
 compare CASE --half-cycles 1000000000 | --half-cycles is '1000000000' | memory
 compare CASE --duration 1e300 | --duration is 1e+300 | at most 3.278e+05 s
-compare CASE --step 1e-300 | --step is '1e-300' | at least 1e-07
-compare CASE --duration 3e4 --step 1e-6 | --step is 1e-06 | 1e+09 steps
+compare CASE --p-dt 1e-300 | --p-dt is '1e-300' | at least 1e-07
+compare CASE --duration 3e4 --p-dt 1e-6 | --p-dt is 1e-06 | 1e+09 steps
 compare CASE --duration 3e4 --dt 1e-6 --sources rk4 | at least 3e-05 for a run of 3e+04 s
 compare BLOCK --amplitude 0.4 --omega 1e-140 | --width is 0.5 | 1/p
 export BLOCK --engine mujoco --out DIR --amplitude 0.4 --omega 1e-9 | --width is 0.5 | at most
@@ -250,7 +250,7 @@ def test_what_arithmetic_raises_is_one_line_and_what_a_mistake_does_is_not(
 
 
 def test_accuracy_and_step_reach_only_the_sources_they_are_for():
-    effort = EffortOptions(step=1e-3, accuracy="tight")
+    effort = EffortOptions(p_dt=1e-3, accuracy="tight")
     assert effort.options("exact") == {}
     assert effort.options("rk4") == {"step": 1e-3}
     assert effort.options("pybullet:tuned") == {"step": 1e-3}

@@ -35,7 +35,7 @@ STUDIES = {
 """Study -> a run of it that takes seconds, with an engine of another package (tests/plugin)."""
 QUICKEST = ("histories", "linearizations", "validate")
 OTHERWISE = {"advise", "animate", "blocks", "compare", "export", "doctor", "report"}
-OTHERWISE |= {"readme", "score"}
+OTHERWISE |= {"help", "readme", "score"}
 """Commands of one case, of lists and of all studies."""
 
 

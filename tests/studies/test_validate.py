@@ -85,7 +85,7 @@ def test_the_finding_names_the_best_and_the_worst_source():
         agrees=[True] * 5 + [False],
     )
     words = finding({"errors": errors})
-    assert "MuJoCo" in words and "all 3" in words and "10⁻⁶" in words
+    assert "MuJoCo" in words and "all 3" in words and "0.0001 %" in words
     assert "Box2D" in words and "1 outcome" in words and "Exact" not in words
 
 
