@@ -147,15 +147,16 @@ def shown(tables: Tables) -> Tables:
 
 
 def figures(tables: Tables) -> Figures:
-    """Draw the errors of its presets over their run times, and the matrix of extreme cases."""
+    """Draw the errors of its presets over their run times, and their scores in extreme cases."""
     from studies.drawing.precision import draw_precision
-    from studies.drawing.stability import draw_matrix
+    from studies.drawing.stability import draw_scores
 
     along = precision.work_precision(tables[STEPS])
     answered = (along["wall_s"] > 0.0).any()
+    asked = (stability.scores(tables[EXTREMES], each) for each in ("engine", "case"))
     return {
         **({"score": draw_precision(along)} if answered else {}),
-        "extremes": draw_matrix(tables[EXTREMES], "Extreme cases"),
+        "extremes": draw_scores("Extreme cases", *asked),
     }
 
 

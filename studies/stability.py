@@ -17,7 +17,7 @@ from studies.kit.jobs import Job, Question, Row, ask, summary, unanswered
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables
 from studies.measures.history import SAMPLES
-from studies.measures.presets import in_order, in_words, is_engine, preset_of
+from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, ENERGY_BAND, Verdict, judge, reference
 from studies.measures.wrongness import kind_of
 from studies.sources.registry import core_sources, resolve
@@ -147,15 +147,27 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     return {"stability": whole, "steps": rows.loc[searched].reindex(columns=STEPS)}
 
 
-def by_preset(matrix: pd.DataFrame) -> pd.DataFrame:
-    """Return for each preset how many engines have it, and how many valid cases they predict."""
-    valid = matrix["verdict"] != Verdict.INVALID.value
-    asked = matrix[matrix["source"].map(is_engine) & valid]
-    asked = asked.assign(right=asked["verdict"] == Verdict.GOOD.value)
-    found = asked.groupby(asked["source"].map(preset_of)).agg(
+def scores(matrix: pd.DataFrame, *keys: str) -> pd.DataFrame:
+    """Return how many valid cases engines predict, by preset, and by engine or case besides."""
+    asked = matrix[matrix["source"].map(is_engine) & (matrix["verdict"] != Verdict.INVALID.value)]
+    asked = asked.assign(
+        engine=asked["source"].map(engine_of),
+        preset=asked["source"].map(preset_of),
+        right=asked["verdict"] == Verdict.GOOD.value,
+    )
+    found = asked.groupby([*keys, "preset"], sort=False).agg(
         engines=("source", "nunique"), right=("right", "sum"), valid=("right", "size")
     )
-    return found.loc[in_order(found.index)].rename_axis("preset").reset_index()
+    return found.loc[in_order(found.index)].reset_index() if not keys else found.reset_index()
+
+
+def by_case(matrix: pd.DataFrame) -> pd.DataFrame:
+    """Return a row for each case: with each preset, how many of the engines predict it."""
+    found = scores(matrix, "case")
+    words = [f"{right} of {valid}" for right, valid in found[["right", "valid"]].to_numpy()]
+    wide = found.assign(words=words).pivot(index="case", columns="preset", values="words")
+    wide = wide.reindex(index=found["case"].unique(), columns=in_order(found["preset"]))
+    return wide.fillna("-").reset_index()
 
 
 def verdicts(matrix: pd.DataFrame) -> pd.DataFrame:
@@ -173,7 +185,7 @@ def failures(matrix: pd.DataFrame) -> pd.DataFrame:
 def finding(tables: Tables) -> str:
     """Say which part of the valid cases engines predict, with their first preset and their last."""
     matrix = tables["stability"]
-    found = by_preset(matrix)
+    found = scores(matrix)
     if found.empty:
         right = (matrix["verdict"] == Verdict.GOOD.value).sum()
         return f"Models and solvers predict {out_of(right, len(matrix))} extreme cases."
@@ -190,7 +202,8 @@ def shown(tables: Tables) -> Tables:
     matrix, steps = tables["stability"], tables["steps"]
     doubtful = matrix.loc[matrix["verdict"] == Verdict.INVALID.value, ["case", "invalid"]]
     return {
-        "Valid cases that engines predict, by preset": by_preset(matrix),
+        "Valid cases that engines predict, by preset": scores(matrix),
+        "Engines that predict each case": by_case(matrix),
         "Verdicts on the extreme cases": verdicts(matrix),
         "Failures": failures(matrix)[FAILURE],
         "Cases for which the reference does not hold": doubtful.drop_duplicates("case"),
@@ -199,10 +212,11 @@ def shown(tables: Tables) -> Tables:
 
 
 def figures(tables: Tables) -> Figures:
-    """Draw the matrix of cases and methods."""
-    from studies.drawing.stability import draw_matrix
+    """Draw the valid cases that engines predict."""
+    from studies.drawing.stability import draw_scores
 
-    return {"stability": draw_matrix(tables["stability"], finding(tables))}
+    engines, cases = (scores(tables["stability"], each) for each in ("engine", "case"))
+    return {"stability": draw_scores(finding(tables), engines, cases)} if len(engines) else {}
 
 
 STUDY = Study(
@@ -223,8 +237,8 @@ gives no result at all. Writes stability.csv, steps.csv, findings.txt and a pict
     shown=shown,
     figures=figures,
     captions={
-        "stability": "Extreme cases as rows, methods as columns: the symbol says whether the "
-        "outcome is right or how it is wrong, and whether peak and energy are.",
+        "stability": "How many of the valid extreme cases each engine predicts with each preset, "
+        "and below the six cases on which the presets differ most.",
     },
 )
 command = STUDY.command()

@@ -156,9 +156,12 @@ def test_tables_and_what_they_say():
         "pymunk": ["good", "coarse"],
     }
     matrix = pd.DataFrame(
-        [{"source": source, "verdict": verdict} for source in words for verdict in words[source]]
-    )
-    scores = stability.by_preset(matrix).set_index("preset")
+        [{"source": source, "verdict": verdict, "case": place}
+         for source in words for place, verdict in enumerate(words[source])]
+    )  # fmt: skip
+    by_case = stability.by_case(matrix).set_index("case")
+    assert by_case["landing"].tolist() == ["2 of 2", "1 of 2", "0 of 1"]
+    scores = stability.scores(matrix).set_index("preset")
     # what goes unseen is not right, what is invalid not counted
     assert scores.loc["default"].tolist() == [1, 1, 3]
     assert scores.loc["landing"].tolist() == [2, 3, 5]
