@@ -251,10 +251,11 @@ def shown(tables: Tables) -> Tables:
 
 
 def figures(tables: Tables) -> Figures:
-    """Draw the variants that matter most, a panel for each engine."""
+    """Draw what the settings that matter most are worth, where an engine has a tuned contact."""
     from studies.drawing.contact import draw_contact
 
-    return {"contact": draw_contact(tables["variants"])}
+    left = left_at_default(tables["variants"])
+    return {"contact": draw_contact(left)} if len(left) else {}
 
 
 STUDY = Study(
@@ -277,9 +278,8 @@ contact.csv, variants.csv, own-steps.csv, findings.txt and contact.png.""",
     needed=lambda rows: [row for row in rows if not row["factor"] and not row["own_step"]],
     texts=("factor", "level", "trap"),
     captions={
-        "contact": "Error of the peak, median to largest, of each preset of an engine, and with "
-        "one setting of its contact changed or one help of landing left out: the six that matter "
-        "most, of each preset in turn, the others in one line.",
+        "contact": "The largest error of typical peaks with the tuned contact of each engine, and "
+        "with one of its settings left at the library's default: the three that matter most.",
     },
 )
 command = STUDY.command()

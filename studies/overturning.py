@@ -286,8 +286,8 @@ def figures(tables: Tables) -> Figures:
         }
         drawn["map"] = drawing.draw_map(modes, tables["validity"], window)
     if "parts" in tables:
-        widths = zip(("small", "large"), WIDTHS_M, strict=True)
-        drawn |= {name: drawing.draw_plane(tables["defaults"], at) for name, at in widths}
+        rests = {"at-once": 0.0, "after-rest": 1.0}
+        drawn |= {name: drawing.draw_plane(tables["defaults"], at) for name, at in rests.items()}
     return drawn
 
 
@@ -315,10 +315,11 @@ by pulse, of two similar blocks: --sources engines:default.""",
         "map": "Amplitude over frequency: which pulses overturn a block at once, which after an "
         "impact, with the friction that the exact motion needs, and where it would lift off; and "
         "for each linearization where it overturns and the exact block survives, and the reverse.",
-        "small": "Frequency and amplitude of full-sine pulses, a map for each engine as its "
-        "documentation shows it, for the smaller block: where the outcome is wrong, and where the "
-        "peak errs by more than a tenth.",
-        "large": "The same maps for the larger block, which by similarity should look the same.",
+        "at-once": "Frequency and amplitude of full-sine pulses that come at once, a map for each "
+        "engine with its default settings: where the outcome is wrong, and where the peak errs by "
+        "more than a tenth; every other pulse was asked so, and stands for its neighbour.",
+        "after-rest": "The same maps for pulses that come after a second of rest, in which an "
+        "engine may put the block to sleep.",
     },
 )
 command = STUDY.command()

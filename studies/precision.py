@@ -345,9 +345,9 @@ others. With more than one of --jobs they slow each other down. It takes about 1
     figures=figures,
     needed=lambda rows: [row for row in rows if row["table"] == ALONG],
     captions={
-        "precision": "Median error of the peak over run time, a panel for each engine and a line "
-        "for each of its presets from coarse to fine, all other methods pale behind; in the strip "
-        "above, settings with which a case fails or has a wrong outcome.",
+        "precision": "Median error of the peak over run time, from coarse to fine: models and "
+        "solvers, and a line for each engine in bands of its presets by default, tuned and "
+        "landing; a cross where a case fails or has a wrong outcome.",
     },
     alone=True,
 )

@@ -327,13 +327,16 @@ def shown(tables: Tables) -> Tables:
 
 
 def figures(tables: Tables) -> Figures:
-    """Draw errors against run times, and what floors carry."""
-    from studies.drawing.scenes import draw_floors, draw_times
+    """Draw the errors and run times of frames."""
+    from studies.drawing.sweep import draw_overview
 
-    frames = _engines_in(tables["frame-summary"])
-    drawn = {"frame-time": draw_times(frames)} if len(frames) else {}
-    floors = tables["floor-summary"]
-    return drawn | ({"floor": draw_floors(floors)} if len(floors) else {})
+    lines = _engines_in(tables["frame-summary"]).rename(
+        columns={"frames": "cases", "median_error": "median", "max_error": "max"}
+    )
+    if lines.empty:
+        return {}
+    named = {"engine": lines["source"].map(engine_of), "preset": lines["source"].map(preset_of)}
+    return {"frame-time": draw_overview(lines.assign(**named, ms=lines["ms_a_frame"]))}
 
 
 def _engines_in(lines: pd.DataFrame) -> pd.DataFrame:
@@ -361,10 +364,8 @@ on. What an engine is not built for is a row that says so. Two hours.""",
     figures=figures,
     needed=lambda rows: [row for row in rows if row["reason"] != Reason.UNAVAILABLE.name],
     captions={
-        "frame-time": "For each engine and preset a line from the median to the largest error of a "
-        "frame's peak, at the run time of a case; beside the name the number of wrong outcomes.",
-        "floor": "How far a floor carries a block of what it should, for each engine and each way "
-        "of moving the floor, when it moves at once and when it moves after a second of rest.",
+        "frame-time": "For each engine and preset the error of a frame's peak from its median to "
+        "the largest, how many outcomes are wrong, and the run time of a case.",
     },
 )
 command = STUDY.command()

@@ -128,7 +128,8 @@ def figures(tables: Tables) -> Figures:
     compared = with_reference(tables["sweep"])
     lines = preset_table(over_all(tables["summary"]))
     several = len(lines) and lines["preset"].nunique() > 1
-    drawn = {"overview": draw_overview(lines)} if several else {}
+    wrong = lines.reindex(columns=KINDS).sum(axis=1)
+    drawn = {"overview": draw_overview(lines.assign(wrong=wrong))} if several else {}
     if compared["source"].nunique() > MOST_DRAWN:
         return drawn
     each = compared.groupby("figure", sort=False)
@@ -257,8 +258,8 @@ Writes sweep.csv, summary.csv, findings.csv, findings.txt and a picture of each 
     captions={
         "overview": "For each engine and preset the error of the peak from its median to the "
         "largest, how many outcomes are wrong, and the run time of a case.",
-        "figure": "The largest rotation over the frequency of the pulse, who overturns (band), and "
-        "below the error; a column for each H/B.",
+        "figure": "The largest rotation over the frequency of the pulse, a row for each H/B and a "
+        "column for each B, who overturns (band), and below the errors.",
     },
 )
 command = STUDY.command()

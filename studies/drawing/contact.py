@@ -1,91 +1,45 @@
-"""The largest error with each change of a contact that matters, a panel for each engine."""
+"""The error with one tuned setting left at its default: the three that matter most an engine."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engines.factors import BY_DEFAULT, OWN_STEP
-from studies.drawing.facets import dot, error_scale, key, panels, preset_dots, rows, strip_beyond
+from engines.factors import BEST, DEFAULT
+from studies.drawing.facets import dot, error_scale, key, rows, sheet
 from studies.drawing.styles import title_of
-from studies.kit.say import capital
-from studies.measures.presets import in_order, look_of
+from studies.measures.presets import look_of
 
-MATTER = 6
-"""How many variants of an engine are drawn one by one."""
-LOWEST = 1e-6
-"""Errors below are drawn here."""
+MOST = 3
+"""Settings of an engine that are drawn."""
+END = 10.0
+"""End of the scale of errors, to which a setting is drawn with which a case fails."""
 
 
-def draw_contact(lines: pd.DataFrame) -> Figure:
-    """Draw the error of the peak of the variants that matter most, and count the others."""
-    engines = list(lines["engine"].unique())
-    drawn = [_ordered(lines[lines["engine"] == engine]) for engine in engines]
-    most = max(len(ordered) for ordered, _ in drawn)
-    drawing, grid = panels(len(engines), 2, (4.9, 0.6 + 0.2 * most), 0.9, sharex=True)
-    grid[0].set(xscale="log", xlim=(LOWEST / 2.0, 15.0))
-    error_scale(grid[0].xaxis, LOWEST, 1.0)
-    for axes, engine, (ordered, others) in zip(grid, engines, drawn, strict=True):
-        _one_engine(axes, ordered.to_dict("records"))
-        axes.set_ylim(most + 0.5, -0.6)
-        axes.set_title(title_of(engine), fontsize=11, fontweight="bold", loc="left")
-        words = f"{len(others)} others, {others['broken'].sum()} of which break a case"
-        axes.text(1.0, most, words, fontsize=8.5, ha="right", va="center", color="#555555",
-                  transform=axes.get_yaxis_transform())  # fmt: skip
-    changed = lines[lines["factor"] != ""]
-    drawing.suptitle(
-        f"{changed['worse'].sum()} of {len(changed)} changes of a contact, one at a time, break "
-        f"a case;\nthe {MATTER} that matter most for each engine, median to largest",
-        fontsize=12,
-    )
-    marks = [dot("a case fails", "X", "black"), dot("an outcome is wrong", "s", "black",
-                                                     markerfacecolor="none")]  # fmt: skip
-    key(drawing, [*preset_dots(lines["preset"]), *marks], 4)
+def draw_contact(left: pd.DataFrame) -> Figure:
+    """Draw the largest error as tuned, and with one setting alone left at its default."""
+    drawn = left.groupby("engine", sort=False).head(MOST).reset_index(drop=True)
+    drawing, (axes,) = sheet((8.6, 1.6 + 0.24 * len(drawn)))
+    tuned, default = look_of(BEST).colour, look_of(DEFAULT).colour
+    rows(axes, list(drawn["factor"]))
+    least = 0.05 * float(drawn[["as_tuned", "max_error"]].min().min())  # left of it are names
+    axes.set(xscale="log", xlim=(least, END), xlabel="largest error of typical peaks")
+    error_scale(axes.xaxis, max(least, 1e-3), 1.0, 1)
+    for place, line in enumerate(drawn.to_dict("records")):
+        lost = int(line["failed"] + line["wrong"]) if line["worse"] else 0
+        error = END if line["failed"] else min(line["max_error"], END)
+        axes.plot([line["as_tuned"], error], [place] * 2, color=default, lw=2.4, alpha=0.5)
+        axes.plot(line["as_tuned"], place, "|", color=tuned, markersize=9, markeredgewidth=2)
+        axes.plot(error, place, "o" if error < END else ">", color=default, clip_on=False)
+        if lost:
+            kind = "without result" if line["failed"] else "wrong"
+            axes.annotate(f"{lost} {kind}", (error, place), (-8, 0), fontsize=8.5, ha="right",
+                          va="bottom", textcoords="offset points")  # fmt: skip
+    for engine, of in drawn.groupby("engine", sort=False):
+        axes.axhline(of.index[0] - 0.5, color="#aaaaaa", linewidth=0.8)
+        axes.text(0.01, of.index.to_numpy().mean(), title_of(str(engine)), va="center",
+                  fontsize=11, fontweight="bold", transform=axes.get_yaxis_transform())  # fmt: skip
+    drawing.suptitle("Errors with a tuned contact, and with one setting left at its default")
+    handles = [dot("as tuned", "|", tuned, markersize=9, markeredgewidth=2)]
+    key(drawing, [*handles, dot("this setting at its default", "o", default)], 2)
     return drawing
-
-
-def _one_engine(axes: Axes, records: list[dict[Any, Any]]) -> None:
-    rows(axes, [_label(line) for line in records])
-    strip_beyond(axes, 2.5, along="x")  # of failed variants and wrong outcomes
-    for place, (text, line) in enumerate(zip(axes.get_yticklabels(), records, strict=True)):
-        colour = look_of(str(line["preset"])).colour
-        text.set(color=colour, fontweight="normal" if line["factor"] else "bold")
-        median, error = (max(float(line[name]), LOWEST) for name in ("median_error", "max_error"))
-        axes.plot([median, error], [place, place], color=colour, linewidth=2.0, alpha=0.5)
-        axes.plot(error, place, "o", color=colour, markersize=4.5 if line["factor"] else 7)
-        if line["failed"]:
-            axes.plot(6.0, place, "X", color="#000000", markersize=6)
-        elif line["wrong"]:
-            axes.plot(6.0, place, "s", color="#000000", fillstyle="none", markersize=5.5)
-
-
-def _ordered(lines: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Return an engine's presets with the variants that matter, and the other variants.
-
-    Of each preset in turn the one that breaks most cases, or else moves a peak or an impact most;
-    they stand by preset, from the most accurate to the failed.
-    """
-    broken = lines["worse"] | lines["max_error"].isna()
-    lines = lines.assign(
-        broken=broken,
-        lost=(lines["failed"] + lines["wrong"]).where(broken, 0),
-        matter=lines[["moved", "ratio_moved"]].max(axis=1).fillna(0.0),
-        first=-lines["preset"].map(in_order(lines["preset"]).index),
-        own=lines["factor"] != "",
-    )
-    most = ["broken", "lost", "matter"]
-    varied = lines[lines["own"]].sort_values(most, ascending=False, kind="stable")
-    turn = varied.groupby("preset").cumcount().sort_values(kind="stable")
-    varied = varied.loc[turn.index]
-    drawn = pd.concat([lines[~lines["own"]], varied.head(MATTER)])
-    return drawn.sort_values(["first", "own", "broken", "max_error"]), varied.iloc[MATTER:]
-
-
-def _label(line: dict[Any, Any]) -> str:
-    if not line["factor"]:
-        return capital(look_of(str(line["preset"])).short)
-    level = str(line["level"]).replace(OWN_STEP, "its own").replace(BY_DEFAULT, "its own")
-    return f"{line['factor']}: {level}"

@@ -16,8 +16,6 @@ from matplotlib.typing import ColorType
 from studies.kit.say import power
 from studies.measures.presets import in_order, look_of
 
-STRIP = "#eeeeee"
-"""Behind what has no place on a scale: failed or wrong."""
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 
 
@@ -65,18 +63,6 @@ def rows(axes: Axes, names: Sequence[str], size: float = 9.0) -> None:
     axes.grid(axis="x", alpha=0.25)
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.set_axisbelow(True)
-
-
-def strip_beyond(axes: Axes, start: float, words: str = "", *, along: str = "y") -> None:
-    """Shade what lies beyond a value of a logarithmic scale; say what stands there, beyond y.
-
-    The axes must have the limits that they will keep; the strip ends at the larger one.
-    """
-    end = max(getattr(axes, f"get_{along}lim")())
-    span: Any = axes.axhspan if along == "y" else axes.axvspan
-    span(start, end, color=STRIP, zorder=-2, linewidth=0.0)
-    axes.text(0.995, math.sqrt(start * end), words, transform=axes.get_yaxis_transform(),
-              ha="right", va="center", fontsize=8, color="#666666")  # fmt: skip
 
 
 def dot(name: str, marker: str, color: ColorType = "#555555", **look: Any) -> Line2D:

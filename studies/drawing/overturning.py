@@ -86,25 +86,29 @@ def _contours(axes: Axes, forces: pd.DataFrame) -> None:
                 text.set_path_effects([*HALO])
 
 
-def draw_plane(rows: pd.DataFrame, width: float) -> Figure:
-    """Draw the verdicts on full sines for blocks of one width at H/B 3, a map for each engine."""
-    shown = (rows["pulse"] == "full-sine") & (rows["aspect"] == 3.0) & (rows["width_m"] == width)
-    rows = rows[shown & (rows["source"] != "exact")]
-    over = np.where(rows["outcome"] == "overturned", "overturns", "survives")
-    known = rows["verdict"].where(rows["verdict"] != "right", over)
-    rows = rows.assign(code=known.map(PLACES))
-    groups = rows.groupby("source", sort=False)
+def draw_plane(rows: pd.DataFrame, rest_s: float) -> Figure:
+    """Draw the verdicts on full sines that come after a rest [s], a map for each engine.
+
+    Every other pulse of the plane comes so; it stands for its neighbour, too.
+    """
+    shown = (rows["pulse"] == "full-sine") & (rows["aspect"] == 3.0) & (rows["width_m"] == 0.5)
+    asked = rows[shown & (rows["source"] != "exact")]
+    over = np.where(asked["outcome"] == "overturned", "overturns", "survives")
+    known = asked["verdict"].where(asked["verdict"] != "right", over)
+    asked = asked.assign(code=known.map(PLACES).where(asked["rest_s"] == rest_s))
+    groups = asked.groupby("source", sort=False)
     drawing, grid = panels(len(groups), ACROSS, (2.4, 2.4), 1.3, sharex=True, sharey=True)
-    for axes, (source, mine) in zip(grid, groups, strict=True):
-        codes = mine.pivot(index="onsets", columns="omega_over_p", values="code")
+    for axes, (source, of) in zip(grid, groups, strict=True):
+        codes = of.pivot(index="onsets", columns="omega_over_p", values="code")
+        codes = codes.ffill(axis=1).bfill(axis=1)
         axes.pcolormesh(codes.columns, codes.index, codes, shading="nearest", **_scale(_colours()))
-        right = (mine.loc[mine["verdict"] != "invalid", "verdict"] == "right").mean()
-        words = f"{title_of(str(source))}: {right:.0%} right".replace("%", " %")
-        axes.set_title(words, fontsize=10)
+        valid = of.loc[of["code"].notna() & (of["verdict"] != "invalid"), "verdict"]
+        right = f"{(valid == 'right').mean():.0%}".replace("%", " %")
+        axes.set_title(f"{title_of(str(source))}: {right} right", fontsize=10)
     _name_axes(drawing, grid, ACROSS)
-    title = f"Full sines, B = {width:g} m, H = {3.0 * width:g} m;\nevery other one comes after a "
-    drawing.suptitle(f"{title}second of rest", fontsize=11)
-    seen = [VERDICTS[name] for name in VERDICTS if PLACES[name] in set(rows["code"])]
+    words = f"after {rest_s:g} s of rest" if rest_s else "at once"
+    drawing.suptitle(f"Full sines that come {words}: B = 0.5 m, H = 1.5 m", fontsize=11)
+    seen = [VERDICTS[name] for name in VERDICTS if PLACES[name] in set(asked["code"])]
     _key(drawing, seen, 3 if len(groups) >= ACROSS else 2)
     return drawing
 

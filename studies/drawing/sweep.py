@@ -1,8 +1,9 @@
-"""The paper's figures 6 to 9, a column for each H/B; and errors and run times of all presets."""
+"""The paper's figures 6 to 9, a row for each H/B; and errors and run times of all presets."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 from typing import Any
 
 import pandas as pd
@@ -12,10 +13,9 @@ from matplotlib.lines import Line2D
 
 from engines.declaration import AT_REST
 from studies.drawing.facets import error_scale, key, preset_dots, rows, sheet
-from studies.drawing.styles import line_of, name_of, style_of, title_of
+from studies.drawing.styles import full_name, line_of, style_of, title_of
 from studies.kit.say import part
 from studies.measures.presets import in_order, look_of
-from studies.measures.wrongness import KINDS
 
 TOP, LINE = 1.2, 0.085
 """Upper end of the scale of abs(theta)/theta_cr, and the height of a line in the band above it."""
@@ -24,56 +24,54 @@ FLOOR, CEILING = 1e-8, 1e1
 
 
 def draw_sweep(rows: pd.DataFrame) -> Figure:
-    """Draw one of figures 6 to 9: the peaks of the smallest width, and the errors of all widths."""
-    first, widths = rows.iloc[0], sorted(rows["width_m"].unique())
-    sources = list(rows["source"].unique())
-    drawn = rows.sort_values("omega_over_p", kind="stable").assign(
-        survived=rows["peak_ratio"].where(rows["outcome"].isin(["rocked", "at rest"])),
-        error=rows["error"].abs().clip(FLOOR, CEILING),
+    """Draw one of figures 6 to 9 as the paper does, H/B down and B across, and below the errors."""
+    sources, first = list(rows["source"].unique()), rows.iloc[0]
+    drawn = rows.sort_values("omega_over_p", kind="stable")
+    aspects, widths = (sorted(rows[name].unique()) for name in ("aspect", "width_m"))
+    heights = [1.0] * len(aspects) + [1.1]
+    size = (9.4, 1.2 + 2.4 * len(heights))
+    drawing, grid = sheet(
+        size, len(heights), len(widths), sharex=True, sharey="row", height_ratios=heights
     )
-    panels = dict(list(drawn.groupby("aspect")))
-    drawing = Figure(figsize=(9.4, 6.6), layout="constrained")
-    grid = drawing.subplots(
-        2, len(panels), sharex=True, sharey="row", squeeze=False, height_ratios=(1.25, 1.0)
-    )
-    for upper, lower, (aspect, panel) in zip(*grid, panels.items(), strict=True):
-        _peaks(upper, panel[panel["width_m"] == widths[0]], sources)
-        known = panel[panel["error"].notna() & (panel["source"] != "exact")]
-        _errors(lower, known, widths[0])
-        upper.set_title(f"H/B = {aspect:g}", fontsize=10)
-        lower.set_xlabel("frequency of the pulse  ω/p  [–]")
-    grid[0, 0].set(ylim=(0.0, _level(len(sources) - 0.7)), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0],
-                   ylabel="largest rotation  |θ|/θcr  [–]", xlim=(0.0, 4.1))  # fmt: skip
-    grid[1, 0].set(yscale="log", ylim=(FLOOR, CEILING), ylabel="relative error of it  [–]")
-    error_scale(grid[1, 0].yaxis, FLOOR, CEILING)
-    for axes in grid.flat:
+    for axes, (aspect, width_m) in zip(grid, product([*aspects, None], widths), strict=False):
+        mine = drawn[drawn["width_m"] == width_m]
         axes.grid(alpha=0.25)
-    looks = [Line2D([], [], label=name_of(source), **_look(source)) for source in sources]
-    key(drawing, looks, 6, 8.0)
+        if aspect is not None:
+            _peaks(axes, mine[mine["aspect"] == aspect], sources)
+            axes.set_title(f"H/B = {aspect:g}, B = {width_m:g} m", fontsize=10)
+        else:
+            _errors(axes, mine[mine["source"] != "exact"])
+            axes.set_xlabel("frequency of the pulse  ω/p  [–]")
+    for axes in grid[:: len(widths)]:
+        axes.set(ylim=(0.0, _level(len(sources) - 0.7)), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0],
+                 ylabel="largest |θ|/θcr  [–]", xlim=(0.0, 4.1))  # fmt: skip
+    errors = grid[-len(widths)]
+    errors.set(
+        yscale="log", ylim=(FLOOR, CEILING), ylabel="relative error,\nlargest of all H/B  [–]"
+    )
+    error_scale(errors.yaxis, FLOOR, CEILING)
+    looks = [Line2D([], [], label=full_name(source), **_look(source)) for source in sources]
+    key(drawing, looks, 3, 9.0)
     pulse = f"{first['pulse']} pulse, amplitude (B/H + {first['excess_g']:g}) g"
-    narrowest, *others = (f"B = {width_m:g} m" for width_m in widths)
-    pale = f"; pale, and the same by similarity: {', '.join(others)}" if others else ""
-    drawing.suptitle(f"Figure {first['figure']}: {pulse}; {narrowest}{pale}", fontsize=11)
+    drawing.suptitle(f"Figure {first['figure']}: {pulse}", fontsize=11)
     return drawing
 
 
 def _peaks(axes: Axes, panel: pd.DataFrame, sources: Sequence[str]) -> None:
+    survived = panel["peak_ratio"].where(panel["outcome"].isin(["rocked", "at rest"]))
     for number, source in enumerate(sources):
-        style = style_of(source)
-        points = panel[panel["source"] == source]
-        axes.plot(points["omega_over_p"], points["survived"], **_look(source))
-        beyond = points.loc[points["survived"] > TOP, ["omega_over_p", "survived"]]
-        for x, peak in beyond.itertuples(index=False):
-            axes.plot(x, TOP - 0.04, marker=6, color=style.colour, markersize=6, zorder=5)
-            axes.annotate(f"  {peak:.2f}", (x, TOP - 0.06), color=style.colour, fontsize=7,
-                          va="center")  # fmt: skip
+        mine, colour = panel["source"] == source, style_of(source).colour
+        x, peaks = panel.loc[mine, "omega_over_p"], survived[mine]
+        axes.plot(x, peaks, **_look(source))
+        for at, peak in zip(x[peaks > TOP], peaks[peaks > TOP], strict=True):
+            axes.plot(at, TOP - 0.04, marker=6, color=colour, markersize=6, zorder=5)
+            axes.annotate(f"  {peak:.2f}", (at, TOP - 0.06), color=colour, fontsize=7, va="center")
         for outcome, level, mark, size in (
             ("overturned", _level(number), "s", 2.6),
             ("failed", 0.02, "*", 6.0),
         ):
-            x = points.loc[points["outcome"] == outcome, "omega_over_p"]
-            if len(x):
-                axes.plot(x, [level] * len(x), mark, color=style.colour, markersize=size)
+            at = x[panel.loc[mine, "outcome"] == outcome]
+            axes.plot(at, [level] * len(at), mark, color=colour, markersize=size)
     axes.axhspan(TOP, _level(len(sources) - 0.7), color="#eeeeee", zorder=0)
     axes.text(4.05, TOP - 0.02, "above: overturned", ha="right", va="top", fontsize=8,
               color="#555555")  # fmt: skip
@@ -84,12 +82,11 @@ def _level(number: float) -> float:
     return TOP + LINE * (number + 0.7)
 
 
-def _errors(axes: Axes, known: pd.DataFrame, narrowest: float) -> None:
-    for (name, width_m), points in known.groupby(["source", "width_m"], sort=False):
-        source = str(name)
-        look = {**style_of(source).points(3.0), "linestyle": line_of(source), "linewidth": 0.9}
-        pale = {"alpha": 0.3, "zorder": 2} if width_m != narrowest else {"zorder": 3}
-        axes.plot(points["omega_over_p"], points["error"], **look, **pale)
+def _errors(axes: Axes, lines: pd.DataFrame) -> None:
+    for name, points in lines.groupby("source", sort=False):
+        sizes = points["error"].abs().groupby(points["omega_over_p"]).max().clip(FLOOR, CEILING)
+        look = {"linestyle": line_of(str(name)), "linewidth": 0.9}
+        axes.plot(sizes.index, sizes, **{**style_of(str(name)).points(3.0), **look})
 
 
 def _look(source: str) -> dict[str, Any]:
@@ -99,7 +96,10 @@ def _look(source: str) -> dict[str, Any]:
 
 
 def draw_overview(table: pd.DataFrame) -> Figure:
-    """Draw errors and run times of a table of presets: engines as rows, presets as dots."""
+    """Draw errors and run times of presets: engines as rows, presets as dots.
+
+    The table has a line for each: engine, preset, cases, wrong, median, max, ms.
+    """
     table = table[table["preset"] != AT_REST]  # a variant, which the table has
     engines, presets = list(dict.fromkeys(table["engine"])), in_order(table["preset"])
     size = (8.6, 1.9 + 0.125 * len(presets) * len(engines))
@@ -112,8 +112,8 @@ def draw_overview(table: pd.DataFrame) -> Figure:
         errors.plot(line["median"], y, "|", color=colour, markersize=7)
         errors.plot(line["max"], y, "o", color=colour, markersize=5.5)
         times.plot(line["ms"], y, "o", color=colour, markersize=5.5)
-        if lost := sum(line[kind] for kind in KINDS):
-            errors.annotate(f"{lost:.0f} wrong", (line["max"], y), (6, 0), color=colour,
+        if line["wrong"]:
+            errors.annotate(f"{line['wrong']:.0f} wrong", (line["max"], y), (6, 0), color=colour,
                             textcoords="offset points", fontsize=8.5, va="center")  # fmt: skip
     rows(errors, [title_of(name) for name in engines], 11.0)
     for axes in (errors, times):

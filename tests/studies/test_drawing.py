@@ -1,14 +1,12 @@
-"""Figures: who is told from whom, names that do not cover each other, what is left out."""
+"""Figures: who is told from whom."""
 
 import itertools
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from engines import ENGINES
-from studies.drawing.labels import Name, around
 from studies.drawing.linearizations import ONSETS
 from studies.drawing.overturning import VERDICTS
 from studies.drawing.styles import (
@@ -73,25 +71,6 @@ def test_no_engine_takes_the_look_of_another():
     assert len({look_at(place)[0] for place in range(8)}) == 8
 
 
-def test_names_keep_clear_of_each_other_of_lines_and_of_words():
-    axes, beside, hidden = Figure(figsize=(12.0, 3.0)).subplots(1, 3)
-    hidden.set_visible(False)
-    axes.plot([0.0, 1.0], [0.0, 1.0])
-    words = axes.text(0.5, 0.6, "words")
-    places = [(0.4, 0.4), (0.45, 0.4), (0.4, 0.45), (0.5, 0.5)]
-    around(axes, [])
-    around(axes, [Name(f"name {i}", *place, "k") for i, place in enumerate(places)])
-    assert (beside.get_visible(), hidden.get_visible()) == (True, False)
-    boxes = [text.get_window_extent() for text in axes.texts if text is not words]
-    assert len(boxes) == len(places)
-    line = axes.transData.transform(np.column_stack([np.linspace(0.0, 1.0, 200)] * 2))
-    for box in boxes:
-        assert not box.overlaps(words.get_window_extent())
-        assert not any(box.overlaps(other) for other in boxes if other is not box)
-        assert not any(box.contains(*point) for point in line)
-        assert axes.get_window_extent().count_contains(box.get_points()) == 2
-
-
 def words_of(drawing):
     """Return the words written in a figure as it is laid out, with their boxes."""
     lay_out(drawing)
@@ -112,7 +91,7 @@ def words_of(drawing):
     return [(text.get_text(), text.get_window_extent()) for text in texts]
 
 
-NAMING = ("precision", "contact", "advice", "validate", "restitution")
+NAMING = ("precision", "contact", "advice", "validate", "restitution", "stability", "scenes")
 
 
 @pytest.mark.parametrize("part", [part for part in PARTS if part.folder in NAMING])
