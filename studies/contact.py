@@ -46,8 +46,6 @@ class Options:
 
     Attributes
     ----------
-    engines
-        Names of engines, without a preset.
     scene
         block: cases of the paper. frame: random frames, a beam on 2 to 5 columns.
     """

@@ -52,13 +52,7 @@ STILL = SinePulse(amplitude=0.0, omega=1.0, half_cycles=1)
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Which engines.
-
-    Attributes
-    ----------
-    engines
-        Names of engines, without a preset.
-    """
+    """Which engines."""
 
     engines: Engines = tuple(name for name in installed_engines() if name in WAYS)
 

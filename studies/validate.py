@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import islice
 from typing import Annotated
@@ -13,13 +13,12 @@ import pandas as pd
 from cyclopts import Parameter
 
 from analytic import simulate
-from analytic.block import Rocker
 from analytic.response import Outcome
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import Count, one_of, refuse_both
+from studies.kit.arguments import Count, one_of
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.options import EffortOptions, Yours
+from studies.kit.options import EffortOptions
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables
 from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
@@ -63,25 +62,19 @@ class Options(EffortOptions):
     cases: Count | None = None
     seed: Count = 1
     scene: Annotated[Drawn, one_of(Drawn)] = "block"
-    yours: Yours = Yours()  # noqa: RUF009
-
-    def settings(self, sources: Sequence[str], system: Rocker) -> dict[str, Row]:
-        """Return what the options set of each source."""
-        own = self.yours.options(sources, system)
-        return {source: {**self.options(source), **own[source]} for source in sources}
 
 
 def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
     """Return the jobs in the order of the table: case by case, source by source."""
-    refuse_both(dt=options.yours.dt, p_dt=options.p_dt)
     cases = options.cases or CASES[options.halves][quick]
     options.refuse_idle(sources)
+    own = {source: options.options(source) for source in sources}
     if options.halves:
-        return _with_halves(sources, cases, TESTS[quick], options)
+        return _with_halves(own, cases, TESTS[quick], options)
     return [
         _job({"seed": options.seed}, case, source, settings)
         for case in islice(draw(options.seed, options.scene), cases)
-        for source, settings in options.settings(sources, case.block).items()
+        for source, settings in own.items()
     ]
 
 
@@ -90,13 +83,13 @@ def _job(labels: Row, case: RandomCase, source: str, settings: Row) -> Job:
     return Job(labels={**labels, **asdict(case)}, case=posed, source=source, options=settings)
 
 
-def _with_halves(sources: Sequence[str], cases: int, tests: int, options: Options) -> list[Job]:
+def _with_halves(own: Mapping[str, Row], cases: int, tests: int, options: Options) -> list[Job]:
     found = []
     for use, seed, count in ((TEST, options.seed, tests), (CALIBRATE, options.seed + 1, cases)):
         drawn = draw(seed, options.scene)
         rocked = (it for it in drawn if simulate(it.block, it.motion).outcome is Outcome.ROCKED)
         for number, case in enumerate(islice(rocked, count)):
-            for source, settings in options.settings(sources, case.block).items():
+            for source, settings in own.items():
                 job = _job({"set": use}, replace(case, case=number), source, settings)
                 if (finer := halved(job)) is None:
                     words = "with --halves it must be an engine with steps that can be halved"

@@ -107,7 +107,7 @@ def command(
             }
             print(json_text.dumps(finite, allow_nan=False))
     else:
-        print(table_text(case, records(rows), note, degrees=excitation.degrees))
+        print(table_text(case, records(rows), note))
     if plot:
         draw(case, rows, plot)
     return exit_code(rows)
@@ -134,26 +134,20 @@ def draw(case: Question, rows: Sequence[Row], path: Path) -> None:
         save(draw_histories(pd.concat(parts), "The same block, the same motion of the base"), path)
 
 
-def table_text(
-    case: Question, records: Sequence[Row], note: str = "", *, degrees: bool = False
-) -> str:
-    """Return the case, a note on its motion, and its records; angles over alpha, or in degrees."""
-    theta, rate = case.start
-    turned, system = math.degrees(1.0), case.system
-    if degrees:
-        words = f"θ = {turned * theta:.6g}°, θ' = {turned * rate:.6g}°/s"
-    else:
-        words = f"θ = {theta / system.alpha:.6g} α, θ' = {rate / (system.alpha * system.p):.6g} αp"
+def table_text(case: Question, records: Sequence[Row], note: str = "") -> str:
+    """Return the case, a note on its motion, and its records; angles over alpha."""
+    (theta, rate), system = case.start, case.system
+    words = f"θ = {theta / system.alpha:.6g} α, θ' = {rate / (system.alpha * system.p):.6g} αp"
     facts = [f"{name} {number(records[0][name])}" for name in OF_THE_CASE]
     return "\n".join(
         [
-            _standing(system, degrees),
+            _standing(system),
             f"ground  {_ground(case)}; observed for {case.duration:.4g} s",
             *[f"base    {note}"] * bool(note),
             *[f"start   {words}"] * (case.start != (0.0, 0.0)),
             *[f"exact   {', '.join(facts)}"] * (not isinstance(system, SlidingBlock)),
             "",
-            _table(records, system, degrees),
+            _table(records, system),
             *(
                 f"{record['source']}: {record['message']}"
                 for record in records
@@ -163,11 +157,10 @@ def table_text(
     )
 
 
-def _table(records: Sequence[Row], system: System, degrees: bool) -> str:
+def _table(records: Sequence[Row], system: System) -> str:
     """Return a line for each source, of the columns in which one has a number or a word."""
-    unit = math.degrees(system.alpha) if degrees else 1.0
     words: dict[str, Callable[[Any], str]] = {"wall_s": duration, "slips": _slips}
-    words["peak_ratio"] = lambda ratio: f"{unit * ratio:.6f}"
+    words["peak_ratio"] = "{:.6f}".format
 
     def cell(name: str, value: Any) -> str:
         return words.get(name, number)(value) if known(value) else "-"
@@ -179,16 +172,14 @@ def _table(records: Sequence[Row], system: System, degrees: bool) -> str:
     if isinstance(system, SlidingBlock):
         names.remove("peak_ratio")
     rows = [[cell(name, record.get(name)) for name in names] for record in records]
-    heads = ["peak [°]" if degrees and name == "peak_ratio" else name for name in names]
-    return aligned([heads, *rows], [name not in ("source", "outcome", "slips") for name in names])
+    return aligned([names, *rows], [name not in ("source", "outcome", "slips") for name in names])
 
 
-def _standing(system: System, degrees: bool) -> str:
+def _standing(system: System) -> str:
     sizes = f"B = {system.width:g} m, H = {system.height:g} m"
     if isinstance(system, SlidingBlock):
         return f"slide   {sizes}, friction {system.friction:g}"
-    alpha = f"{math.degrees(system.alpha):.5g}°" if degrees else f"{system.alpha:.5g} rad"
-    numbers = f"α = θcr = {alpha}, p = {system.p:.5g} rad/s"
+    numbers = f"α = θcr = {system.alpha:.5g} rad, p = {system.p:.5g} rad/s"
     if isinstance(system, RockingFrame):
         return f"frame   {system.columns} columns of {sizes}, load {system.load:g}: {numbers}"
     return f"block   {sizes}: {numbers}"

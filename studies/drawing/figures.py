@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.drawing.facets import key, sheet
-from studies.drawing.styles import LOWEST, line_of, name_of, style_of
+from studies.drawing.styles import LOWEST, full_name, line_of, style_of
 
 
 def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -> Figure:
@@ -31,7 +31,7 @@ def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -
     grid[-1].set_xlabel("time  t  [s]")
     drawing.suptitle(title)
     handles = [
-        Line2D([], [], label=name_of(source), **_look(source, style_of(source).width, 6.0))
+        Line2D([], [], label=full_name(source), **_look(source, style_of(source).width, 6.0))
         for source in sources
     ]
     if samples["amplitude_g"].any():

@@ -74,15 +74,9 @@ def title_of(source: str) -> str:
     return ENGINES[engine].title if engine in ENGINES else engine
 
 
-def name_of(source: str) -> str:
-    """Return how a source is called in a picture: an engine by its title, with its preset."""
-    _, colon, preset = source.partition(":")
-    return title_of(source) + (f", {look_of(preset).short}" if colon else "")
-
-
 def full_name(source: str) -> str:
-    """Return the same with the preset that a plain name stands for, or the title of a model."""
+    """Return how a source is called in a picture: an engine by its title, with its preset."""
     if source in MODELS:
         return MODELS[source].title
     preset = preset_of(source)
-    return name_of(f"{engine_of(source)}:{preset}") if preset else name_of(source)
+    return f"{title_of(source)}, {look_of(preset).short}" if preset else title_of(source)

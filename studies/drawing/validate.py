@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.drawing.facets import error_scale, panels, rows
-from studies.drawing.styles import LOWEST, name_of, style_of
+from studies.drawing.styles import LOWEST, full_name, style_of
 from studies.measures.differences import sensitivity_of
 
 BANDS = (0.0, 3.0, 10.0, 100.0, inf)
@@ -30,7 +30,7 @@ def draw_conditioning(errors: pd.DataFrame) -> Figure:
     grid[0].set(xscale="log", xlim=(0.5 * low, 2.0 * high))
     error_scale(grid[0].xaxis, *grid[0].get_xlim())
     for axes, ((start, end), cases) in zip(grid, bands.items(), strict=True):
-        rows(axes, [name_of(source) for source in sources], 10.0)
+        rows(axes, [full_name(source) for source in sources], 10.0)
         for source, size in cases.groupby("source")["size"]:
             look = {"color": style_of(str(source)).colour}
             axes.boxplot(

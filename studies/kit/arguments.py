@@ -148,7 +148,12 @@ def _check_engines(_: type, names: Sequence[str] | None) -> None:
 Sources = Annotated[tuple[str, ...], sources_option()]
 Engines = Annotated[
     tuple[str, ...],
-    Parameter(consume_multiple=True, show_default=_spaced, validator=_check_engines),
+    Parameter(
+        consume_multiple=True,
+        show_default=_spaced,
+        validator=_check_engines,
+        help="Names of engines, without a preset.",
+    ),
 ]
 
 

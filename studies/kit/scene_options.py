@@ -80,8 +80,6 @@ class Excitation:
     rate
         Angular velocity with which it starts, in units of αp; that of an upright block says about
         which corner it turns.
-    degrees
-        Angles in degrees: --tilt, --rate [°/s] and --phase, and the rotations in a table.
     """
 
     amplitude: Positive | None = None
@@ -97,7 +95,6 @@ class Excitation:
     baseline: Annotated[Baseline, one_of(Baseline)] | None = None
     tilt: Finite | None = None
     rate: Finite | None = None
-    degrees: bool = False
 
     def pose(self, block: System) -> tuple[Motion, tuple[float, float]]:
         """Return the motion that the options mean, and θ [rad] and its rate [rad/s] at t = 0."""
@@ -139,19 +136,16 @@ class Excitation:
                 amplitude_g,
                 omega=omega,
                 half_cycles=self.half_cycles or PULSES[self.pulse or "full-sine"],
-                phase=self._angle(self.phase or 0.0, 1.0),
+                phase=self.phase or 0.0,
             )
 
     def _start(self, block: System, motion: Motion) -> tuple[float, float]:
-        theta = self._angle(self.tilt or 0.0, block.alpha)
-        rate = self._angle(self.rate or 0.0, block.alpha * block.p)
+        theta, rate = (self.tilt or 0.0) * block.alpha, (self.rate or 0.0) * block.alpha * block.p
         if not abs(theta) < 0.5 * math.pi:
-            tilt = self.tilt or 0.0
-            side = f"{90.0 if self.degrees else 0.5 * math.pi / block.alpha:.6g}"
-            unit = "°" if self.degrees else "α"
+            side = f"{0.5 * math.pi / block.alpha:.6g}"
             raise BadInputError(
-                f"--tilt is {tilt:g}; it must lie between -{side} and {side} {unit}, "
-                "where the side of the block lies on the ground; --degrees takes degrees"
+                f"--tilt is {self.tilt:g}; it must lie between -{side} and {side} α, "
+                "where the side of the block lies on the ground"
             )
         for name, given, value, least in (
             ("tilt", self.tilt, theta, LEAST_TILT * block.alpha),
@@ -164,9 +158,6 @@ class Excitation:
             words = "it must not be where a block at rest balances"
             raise BadInputError(f"--tilt is {self.tilt:g} and nothing moves; {words}")
         return theta, rate
-
-    def _angle(self, value: float, unit: float) -> float:
-        return math.radians(value) if self.degrees else value * unit
 
 
 MOST_M = 200.0

@@ -14,14 +14,12 @@ import pandas as pd
 class Finding:
     """A statement, whether it holds, and the numbers that decide it.
 
-    `holds` is None where a source that it needs was not asked; `source` is whom it is about, where
-    it is said of several in turn.
+    `holds` is None where a source that it needs was not asked.
     """
 
     statement: str
     holds: bool | None
     numbers: str
-    source: str = ""
 
 
 Check: TypeAlias = "Callable[[pd.DataFrame], tuple[bool, str]]"
@@ -40,6 +38,5 @@ def claim(statement: str, *needs: str) -> Callable[[Check], Callable[[pd.DataFra
 
 
 def table_of(items: Sequence[Finding]) -> pd.DataFrame:
-    """Return findings as a table, with a column source where some are about one."""
-    table = pd.DataFrame([asdict(item) for item in items])
-    return table if any(table["source"]) else table.drop(columns="source")
+    """Return findings as a table."""
+    return pd.DataFrame([asdict(item) for item in items])

@@ -55,16 +55,10 @@ class Part:
 
 
 def statements(tables: Tables) -> list[tuple[bool, str]]:
-    """Return whether each statement that a study tested holds, and for which sources."""
-    found: dict[tuple[bool, str], list[str]] = {}
-    for line in tables.get("findings", pd.DataFrame()).to_dict("records"):
-        if str(line["holds"]) in ("True", "False"):
-            key = str(line["holds"]) == "True", str(line["statement"])
-            found.setdefault(key, []).append(str(line.get("source", "")))
-    return [
-        (holds, f"{words} ({', '.join(names)})" if all(names) else words)
-        for (holds, words), names in found.items()
-    ]
+    """Return whether each statement that a study tested holds."""
+    lines = tables.get("findings", pd.DataFrame()).to_dict("records")
+    tested = [(str(line["holds"]), str(line["statement"])) for line in lines]
+    return [(holds == "True", words) for holds, words in tested if holds in ("True", "False")]
 
 
 CHAPTERS: dict[str, tuple[Part, ...]] = {

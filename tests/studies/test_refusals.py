@@ -73,7 +73,6 @@ compare CASE --duration 0.5 | --duration is 0.5 | 0.999998 s
 compare CASE --rate 1e-300 | --rate is 1e-300; it must be 0, or of a size 1e-150 to
 compare CASE --phase 1e17 | --phase is 1e+17; it must be from -1e+06 to 1e+06
 compare CASE --tilt -4.9 | --tilt is -4.9 | between -4.88
-compare CASE --tilt 90 --degrees | --tilt is 90 | between -90 and 90
 compare BLOCK --tilt -1 | --tilt is -1 | balances
 compare BLOCK --tilt 1 --omega 3 | --amplitude missing | requires
 compare BLOCK --tilt 0 | --amplitude and --omega missing | --tilt
@@ -137,7 +136,6 @@ restitution --out DIR --quick | --quick
 validate --out DIR --halves --sources exact | 'exact'; with --halves it must be an engine
 validate --out DIR --halves --sources drake | steps that can be halved
 validate --out DIR --sources exact --p-dt 0.1 | --sources must name a solver or an engine
-validate --out DIR --dt 0.01 --p-dt 0.1 --sources mujoco:tuned | --dt is 0.01 and --p-dt is 0.1
 validate --out DIR --scene slide | among block, frame
 validate --out DIR --seed -1 | --seed is '-1'
 
