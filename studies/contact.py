@@ -107,23 +107,12 @@ def job_of(
     stepping = ENGINES[variant.engine].preset(variant.preset).stepping
     if stepping is Stepping.FIXED and variant.factor != OWN_STEPS and not own_step:
         options["step"] = 2e-3 if quick else 1e-3
+    labels = {name: getattr(variant, name) for name in (*KEY, "trap")}
+    labels |= {"own_step": own_step, "set": kind, **asdict(case)}
     window = free_rocking_window(case.block, case.motion)
-    return Job(
-        labels={
-            **{name: getattr(variant, name) for name in (*KEY, "trap")},
-            "own_step": own_step,
-            "set": kind,
-            **asdict(case),
-        },
-        case=Question(
-            system=case.block,
-            motion=case.motion,
-            duration=window,
-            times=np.linspace(0.0, window, SAMPLES),
-        ),
-        source=variant.source,
-        options=options,
-    )
+    times = np.linspace(0.0, window, SAMPLES)
+    asked = Question(system=case.block, motion=case.motion, duration=window, times=times)
+    return Job(labels=labels, case=asked, source=variant.source, options=options)
 
 
 def measure(job: Job) -> Row:
@@ -234,16 +223,14 @@ def shown(tables: Tables) -> Tables:
     """Return what each tuned setting costs at its default, the presets, and the traps."""
     lines = tables["variants"]
     plain = lines["factor"] == ""
-    measured = ["ratio_over_eta", "newton_e", "slip_widths", "sink_widths", "step_s"]
+    own = lines[lines["factor"] == OWN_STEPS]
+    measured = ["median_error", "ratio_over_eta", "newton_e"]
+    measured += ["slip_widths", "sink_widths", "step_s"]
     traps = lines[(lines["trap"] != "") & ~plain]
     return {
         "Each tuned setting at its default, where all others are tuned": left_at_default(lines),
-        "Presets as they are": lines.loc[
-            plain, ["engine", "preset", "cases", *FOUND, "median_error", *measured]
-        ],
-        "Defaults at their own step": lines.loc[
-            lines["factor"] == OWN_STEPS, ["engine", "level", *FOUND]
-        ],
+        "Presets as they are": lines.loc[plain, ["engine", "preset", "cases", *FOUND, *measured]],
+        "Defaults at their own step": own[["engine", "level", *FOUND]],
         "Traps": traps[[*KEY, *FOUND, "trap"]],
     }
 

@@ -22,14 +22,7 @@ from studies.cases.paper import HISTORIES, Case, chosen_cases
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import duration, part
 from studies.kit.study import Figures, Study, Tables
-from studies.measures.costs import (
-    EXACT,
-    best_of,
-    cheapest_below,
-    exact_cost,
-    joint,
-    parts_of,
-)
+from studies.measures.costs import EXACT, best_of, cheapest_below, exact_cost, joint, parts_of
 from studies.measures.presets import engine_of, look_of, uses_of
 from studies.measures.published import TARGETS
 from studies.measures.wrongness import REST, kind_of
@@ -160,12 +153,7 @@ def along(job: Job) -> Row:
         exact = simulate(block, case.motion, duration=case.duration)
         right = kind_of(found, exact) != REST
         error = abs(found.peak_ratio / exact.peak_ratio - 1.0) if right else math.inf
-    return {
-        **summary(found),
-        "setup_s": round(best.setup_s, 9),
-        "runs": runs,
-        "error": error,
-    }
+    return {**summary(found), "setup_s": round(best.setup_s, 9), "runs": runs, "error": error}
 
 
 def omissions() -> dict[str, dict[str, Any]]:
@@ -347,7 +335,7 @@ others. With more than one of --jobs they slow each other down. It takes about 1
     captions={
         "precision": "Median error of the peak over run time, from coarse to fine: models and "
         "solvers, and a line for each engine in bands of its presets by default, tuned and "
-        "landing; a cross where a case fails or has a wrong outcome.",
+        "landing; a cross where a case fails or has a wrong outcome."
     },
     alone=True,
 )

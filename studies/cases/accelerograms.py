@@ -14,10 +14,7 @@ Baseline = Literal["none", "constant", "linear"]
 
 
 def read_record(
-    path: Path,
-    units: str | None = None,
-    baseline: Baseline | None = None,
-    dt: float | None = None,
+    path: Path, units: str | None = None, baseline: Baseline | None = None, dt: float | None = None
 ) -> Record:
     """Read a recorded ground acceleration [m/s2], as `Record.read` does, and correct it.
 

@@ -1,7 +1,5 @@
 """Random blocks, frames or slides and pulses, and which of them the reference is sure of."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace

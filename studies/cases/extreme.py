@@ -15,14 +15,8 @@ from engines.scene import free_rocking_window
 from studies.sources.registry import resolve
 
 SPRINGS: Mapping[str, Callable[[float, float], Mapping[str, float]]] = {
-    "mujoco": lambda time, step: {
-        "stiffness": (step / time) ** 2,
-        "damping": 2.0 * (step / time),
-    },
-    "pybullet": lambda time, step: {
-        "contact_stiffness": time**-2,
-        "contact_damping": 2.0 / time,
-    },
+    "mujoco": lambda time, step: {"stiffness": (step / time) ** 2, "damping": 2.0 * (step / time)},
+    "pybullet": lambda time, step: {"contact_stiffness": time**-2, "contact_damping": 2.0 / time},
 }
 """Engine -> its settings of a critically damped contact of a time, which may depend on the step."""
 

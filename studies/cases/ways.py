@@ -143,6 +143,6 @@ WAYS: dict[str, dict[str, Way]] = {
 
 WITHOUT = {
     "drake": "its contact yields and dissipates, by Hunt and Crossley's law or a relaxation time; "
-    "what comes back depends on the speed",
+    "what comes back depends on the speed"
 }
 """Name of an engine without a coefficient of restitution -> what it has instead."""

@@ -1,7 +1,5 @@
 """Blocks as outlines, and the picture of the front page."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

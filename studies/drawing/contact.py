@@ -1,7 +1,5 @@
 """The error with one tuned setting left at its default: the three that matter most an engine."""
 
-from __future__ import annotations
-
 import pandas as pd
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """Facets that figures share: panels in rows, dots in rows, scales of errors, keys."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Time histories over each other."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

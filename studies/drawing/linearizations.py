@@ -1,7 +1,5 @@
 """The errors of every variant of a linearization over the slenderness of a block."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import pandas as pd

@@ -1,7 +1,5 @@
 """Overturning maps drawn: modes, where models and engines are wrong, what contact they need."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Error against run time: a band for each kind of preset, a line for each engine."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes

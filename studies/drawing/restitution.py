@@ -1,7 +1,5 @@
 """What becomes of a coefficient of restitution, by the way in which it is asked for."""
 
-from __future__ import annotations
-
 from textwrap import fill
 
 import pandas as pd

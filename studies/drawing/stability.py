@@ -1,7 +1,5 @@
 """Extreme cases that engines predict: a bar for each engine and preset, and cases that differ."""
 
-from __future__ import annotations
-
 from textwrap import fill
 
 import pandas as pd

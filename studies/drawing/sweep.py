@@ -1,7 +1,5 @@
 """The paper's figures 6 to 9, a row for each H/B; and errors and run times of all presets."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import product
 from typing import Any

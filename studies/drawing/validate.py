@@ -1,7 +1,5 @@
 """Random cases: errors in bands of their sensitivity."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import inf
 

@@ -20,16 +20,16 @@ LOADING_S = 60.0
 @contextmanager
 def tried_apart() -> Iterator[None]:
     """Let an engine of another package be loaded here only after another process has loaded it."""
-    registry.elsewhere = _loaded_after_trial
+
+    def loaded(name: str) -> Engine:
+        apart(_load, name)
+        return registry.loaded(name)
+
+    registry.elsewhere = loaded
     try:
         yield
     finally:
         registry.elsewhere = None
-
-
-def _loaded_after_trial(name: str) -> Engine:
-    apart(_load, name)
-    return registry.loaded(name)
 
 
 def _load(name: str) -> None:

@@ -1,7 +1,5 @@
 """Figures as files: each written in one piece."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import BinaryIO

@@ -1,7 +1,5 @@
 """Jobs side by side: measured where they may fail, kept in a store, counted by a bar."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress

@@ -16,14 +16,7 @@ from studies.advise import find, keeps, why, write
 from studies.advise import symptoms as seen
 from studies.kit.tables import read_table, table_in
 from studies.measures.costs import cheapest_kept
-from studies.measures.published import (
-    PUBLISHED,
-    RANDOM,
-    TARGETS,
-    along_steps,
-    counted,
-    settings,
-)
+from studies.measures.published import PUBLISHED, RANDOM, TARGETS, along_steps, counted, settings
 
 CORE = [name for name, engine in ENGINES.items() if engine.core]
 KNOWN = list(along_steps(PUBLISHED, list(ENGINES))["engine"].unique())

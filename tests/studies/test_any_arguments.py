@@ -34,10 +34,7 @@ BEGINNINGS = {
     "readme": [()],
 }
 """What stands before an option so that it matters, of commands that do not fill a folder."""
-FEW = {
-    "sweep": ("--figure", "6"),
-    "validate": ("--cases", "1"),
-}
+FEW = {"sweep": ("--figure", "6"), "validate": ("--cases", "1")}
 """What makes little work of those that do: thousands of jobs are made before a folder is opened."""
 ODD_WORDS = """
 0 1 2 -1 -5 1.5 1,5 1_000 ١٢ +3 0x10 1e5 1e-7 5e-324 1e-308 1e308 -1e308 1e400 1000000000 1000000001

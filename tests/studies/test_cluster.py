@@ -114,10 +114,7 @@ def test_an_address_where_nobody_answers_is_refused_and_so_are_jobs_beside_it(tm
 @pytest.mark.slow
 def test_a_crash_is_a_row_and_costs_no_worker(tmp_path, alone):
     announce("hostile:Crashes", lambda _: "Crashes")
-    with (
-        scheduler(tmp_path) as address,
-        working(address, **{FURTHER: os.environ[FURTHER]}),
-    ):
+    with scheduler(tmp_path) as address, working(address, **{FURTHER: os.environ[FURTHER]}):
         wait_for_workers(address, 1)
         rows = dict(on_cluster(address, 60.0, jobs_of("Crashes", "exact"), answer))
         assert [rows[number]["outcome"] for number in range(2)] == ["failed", "rocked"]

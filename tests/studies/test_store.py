@@ -78,11 +78,7 @@ def test_other_code_and_other_versions_make_rows_old(tmp_path, monkeypatch, caps
 def test_what_makes_a_row_old(tmp_path):
     assert changed({"box2d": "2.3.10"}, {"box2d": identity.NOT_INSTALLED}) == []
     assert changed({"box2d": "2.3.10"}, {"box2d": "2.3.11"}) == ["box2d"]
-    texts = (
-        "def f(): return 1",
-        "def f():\n    'A'\n    return 1  # b",
-        "def f(): return 2",
-    )
+    texts = ("def f(): return 1", "def f():\n    'A'\n    return 1  # b", "def f(): return 2")
     digests = []
     for number, text in enumerate(texts):
         (tmp_path / str(number)).mkdir()
