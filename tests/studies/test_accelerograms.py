@@ -374,22 +374,22 @@ def test_a_named_pipe_is_not_waited_for(tmp_path):
     assert "it must be a file that can be read (it is a named pipe)" in done.stderr
 
 
-def test_a_record_of_ten_million_samples_is_refused_at_once(tmp_path, capsys):
-    """By what its header says, before its samples are looked at."""
+ROW_BY_ROW = b"0 0\n" * (MOST_SAMPLES + 5001)
+LONG = [
+    (GOOD.replace("7,", "10000000,").encode(), "it holds 10000000 samples; it must hold 1000000"),
+    (asc("NDATA: 7", "NDATA: 10000000").encode(), "it holds 10000000 samples"),
+    *((ROW_BY_ROW, "samples"), (MOST_BYTES + 1, "samples")),
+]
+
+
+@pytest.mark.parametrize(("content", "words"), LONG, ids=["AT2", "ASC", "rows", "size"])
+def test_a_file_that_is_too_long_is_refused_at_once(content, words, tmp_path, capsys):
+    """By what its header says, by its words, or by its size."""
     path = tmp_path / "long.AT2"
-    for text in (GOOD.replace("7,", "10000000,"), asc("NDATA: 7", "NDATA: 10000000")):
-        path.write_text(text)
-        words = "it holds 10000000 samples; it must hold 1000000 at most"
-        refused(capsys, [*IN_G, path], BEGIN, words)
-
-
-@pytest.mark.parametrize("content", [b"0 0\n" * (MOST_SAMPLES + 5001), MOST_BYTES + 1])
-def test_a_file_that_is_too_long_is_refused_by_its_size_or_its_words(content, tmp_path, capsys):
-    path = tmp_path / "long.txt"
     path.write_bytes(b"" if isinstance(content, int) else content)
     if isinstance(content, int):
         os.truncate(path, content)
-    refused(capsys, [*IN_G, path], BEGIN, "samples")
+    refused(capsys, [*IN_G, path], BEGIN, words)
 
 
 @pytest.mark.parametrize("form", ["no count", "table"])

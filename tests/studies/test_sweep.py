@@ -5,13 +5,7 @@ import pandas as pd
 import pytest
 
 from studies import sweep
-from studies.cases.paper import sweep_cases
 from studies.kit.run import run
-
-
-def test_each_figure_has_240_cases():
-    cases = list(sweep_cases((6, 9)))
-    assert len(cases) == len(set(cases)) == 480
 
 
 def test_the_exact_model_agrees_with_itself():
