@@ -215,26 +215,20 @@ def plane_tables(rows: pd.DataFrame) -> Tables:
     known = with_verdicts(rows)
     written = known.drop(columns="error").astype({"impacts": int, "steps": int})
     known = known[(known["source"] != "exact") & (known["verdict"] != INVALID)]
-    verdict = known["verdict"]
-    known = known.assign(
-        close=verdict == RIGHT,
-        far=verdict == OFF,
-        false_overturnings=verdict == FALSE,
-        missed_overturnings=verdict == MISSED,
-        **{FALL: verdict.isin([FALSE, MISSED]), REST: verdict == REST},
-        **{NO_ANSWER: verdict == NO_ANSWER},
-        size=known["error"].abs(),
-    )
-
-    def sums(*names: str) -> dict[str, tuple[str, str]]:
-        return {name: (name, "sum") for name in names}
-
+    counted = {
+        **{"close": [RIGHT], "far": [OFF]},
+        **{"false_overturnings": [FALSE], "missed_overturnings": [MISSED]},
+        **{FALL: [FALSE, MISSED], REST: [REST], NO_ANSWER: [NO_ANSWER]},
+    }
+    marks = {name: known["verdict"].isin(verdicts) for name, verdicts in counted.items()}
+    known = known.assign(size=known["error"].abs(), **marks)
+    sums = {name: (name, "sum") for name in ("wall_s", *counted)}
     parts = known.groupby(["source", "width_m"], sort=False).agg(
         cases=("close", "size"),
-        **sums("close", "far", "false_overturnings", "missed_overturnings"),
+        **{name: sums[name] for name in [*counted][:4]},
         median_error=("size", "median"),
         p90_error=("size", lambda size: size.quantile(0.9)),
-        **sums("wall_s", *KINDS),
+        **{name: sums[name] for name in ("wall_s", *KINDS)},
     )
     return {"defaults": written, "parts": parts.reset_index()}
 

@@ -113,22 +113,18 @@ def draw_overview(table: pd.DataFrame) -> Figure:
         if line["wrong"]:
             errors.annotate(f"{line['wrong']:.0f} wrong", (line["max"], y), (6, 0), color=colour,
                             textcoords="offset points", fontsize=8.5, va="center")  # fmt: skip
-    rows(errors, [title_of(name) for name in engines], 11.0)
     for axes in (errors, times):
+        rows(axes, [title_of(name) for name in engines], 11.0)
         axes.set(xscale="log")
-        axes.tick_params(axis="x", labelsize=10)
+        axes.grid(axis="y", visible=False)
         for place in range(1, len(engines)):
             axes.axhline(place - 0.5, color="#cccccc", linewidth=0.8)
-        axes.grid(axis="y", visible=False)
-        axes.tick_params(axis="y", length=0)
-        axes.spines[["top", "right", "left"]].set_visible(False)
     low, high = errors.get_xlim()
     errors.set_xlim(low, 8.0 * high)  # for the words
     error_scale(errors.xaxis, low, max(high, 1.0))
     errors.set_xlabel("error of the largest rotation:\nmedian (bar) to largest (dot)", fontsize=10)
     times.xaxis.set_major_formatter("{x:g}")
     times.set_xlabel("run time of a case  [ms]", fontsize=10)
-    times.grid(axis="x", alpha=0.25)
     most = {name: part(table.loc[table["preset"] == name, "max"].max()) for name in presets}
     words = [f"by up to {most[name]} {look_of(name).words}" for name in (presets[0], presets[-1])]
     head = f"In {table['cases'].max():.0f} cases peaks are off {words[0]},\n{words[1]}"

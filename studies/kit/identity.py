@@ -101,21 +101,18 @@ def maker_of(source: Source, measure: Callable[..., Any]) -> Maker:
         "Python": ".".join(platform.python_version_tuple()[:2]),
         **{name: version_of(name) for name in packages},
     }
+    reference = code_in(*(ROOT / "analytic").rglob("*.py"))
     if not source.engine:
-        made["analytic"] = _reference()
+        made["analytic"] = reference
         return {**made, "studies": code_in(*measured, SOURCES)}
     describing = ("block", "checks", "frame", "slide", "motion", "record", "response")
     known = (ROOT / "analytic" / f"{name}.py" for name in describing)
     # what a study measures may take the exact solution beside the engine's answer
-    made["analytic"] = code_in(*known) if measured == {ANSWER} else _reference()
+    made["analytic"] = code_in(*known) if measured == {ANSWER} else reference
     shared = [*ENGINES_AT.glob("*.py"), *(ENGINES_AT / "run").glob("*.py")]
     made["engines"] = code_in(*(file for file in shared if file.stem not in (*OWN, "export")))
     made["studies"] = code_in(*measured, SOURCES / "registry.py")
     return {**made, f"code of {source.engine}": code_in(_code_of(source.declared.build.__module__))}
-
-
-def _reference() -> str:
-    return code_in(*(ROOT / "analytic").rglob("*.py"))
 
 
 def changed(then: Maker, now: Maker) -> list[str]:
