@@ -39,19 +39,16 @@ FOUND = ["failed", "wrong", "max_error"]
 """What shows a variant's quality: outcomes of all cases, peaks of typical ones."""
 
 
+SCENES = "block: cases of the paper. frame: random frames, a beam on 2 to 5 columns."
+
+
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Which engines, and what stands on the base.
-
-    Attributes
-    ----------
-    scene
-        block: cases of the paper. frame: random frames, a beam on 2 to 5 columns.
-    """
+    """Which engines, and what stands on the base."""
 
     engines: Engines = core_engines()  # noqa: RUF009
-    scene: Annotated[Drawn, one_of(Drawn)] = "block"
+    scene: Annotated[Drawn, one_of(Drawn), Parameter(help=SCENES)] = "block"
 
 
 def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:

@@ -23,6 +23,7 @@ from studies.measures.history import samples
 LINEAR = ("exact", "housner", "modified")
 DRAWN = {2: ("exact", "rk4", "average-acceleration"), 4: LINEAR, 5: LINEAR}
 """What the paper draws; its numerical solution is the exact model's."""
+WHICH = "Figures of the paper: 2 (two solvers), 4 (half-sine) and 5 (full-sine); all by default."
 FIRST = "By default what the paper draws: "
 SAMPLES = ["time_s", "ground_g", "theta_ratio", "velocity_rad_s"]
 """Columns of a figure's samples."""
@@ -31,15 +32,9 @@ SAMPLES = ["time_s", "ground_g", "theta_ratio", "velocity_rad_s"]
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Which figures, and whose lines.
+    """Which figures, and whose lines."""
 
-    Attributes
-    ----------
-    figure
-        Figures of the paper: 2 (two solvers), 4 (half-sine) and 5 (full-sine); all by default.
-    """
-
-    figure: Annotated[tuple[int, ...], some_figures(2, 4, 5)] = (2, 4, 5)
+    figure: Annotated[tuple[int, ...], some_figures(WHICH, 2, 4, 5)] = (2, 4, 5)
     sources: Annotated[tuple[str, ...] | None, sources_option(FIRST, default=False)] = None
 
 

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from itertools import product
-from typing import Literal
+from typing import Annotated
 
 import numpy as np
 import pandas as pd
@@ -25,6 +25,7 @@ from studies.cases.window import LEAST_ONSETS, Window, pulse_of
 from studies.kit.arguments import Positive, as_bad_input
 from studies.kit.jobs import Job, Question, Row, answer
 from studies.kit.say import part
+from studies.kit.scene_options import Pulse
 from studies.kit.study import Figures, Study, Tables
 from studies.measures.presets import titled
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, wrong_in
@@ -50,18 +51,10 @@ RIGHT, FALSE, MISSED, OFF, INVALID = "right", "false", "missed", "peak off", "in
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Which plane of pulses the models map.
+    """Which plane of pulses the models map."""
 
-    Attributes
-    ----------
-    pulse
-        half-sine or full-sine.
-    aspect
-        H/B of the block.
-    """
-
-    pulse: Literal["half-sine", "full-sine"] = "full-sine"
-    aspect: Positive = 4.0
+    pulse: Annotated[Pulse, Parameter(help="half-sine or full-sine.")] = "full-sine"
+    aspect: Annotated[Positive, Parameter(help="H/B of the block.")] = 4.0
 
     def window(self, quick: bool) -> Window:
         """Return the plane that is asked for; BadInputError if no block of the shape is mapped."""

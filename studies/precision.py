@@ -335,7 +335,7 @@ others. With more than one of --jobs they slow each other down. It takes about 1
     captions={
         "precision": "Median error of the peak over run time, from coarse to fine: models and "
         "solvers, and a line for each engine in bands of its presets by default, tuned and "
-        "landing; a cross where a case fails or has a wrong outcome."
+        "landing (or error control); a cross where a case fails or has a wrong outcome."
     },
     alone=True,
 )

@@ -22,19 +22,15 @@ from studies.measures.presets import engine_of, in_order, in_words, preset_of
 from studies.measures.wrongness import KINDS
 from studies.sources.registry import core_sources
 
+WHICH = "Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by default."
+
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options(EffortOptions):
-    """Which figures, and how finely the sources step.
+    """Which figures, and how finely the sources step."""
 
-    Attributes
-    ----------
-    figure
-        Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by default.
-    """
-
-    figure: Annotated[tuple[int, ...], some_figures(6, 7, 8, 9)] = (6, 7, 8, 9)
+    figure: Annotated[tuple[int, ...], some_figures(WHICH, 6, 7, 8, 9)] = (6, 7, 8, 9)
 
 
 MOST_DRAWN = 15

@@ -70,7 +70,7 @@ def one_of(words: Any) -> Any:
     return _read(f"among {', '.join(known)}", lambda _, text: str(known[known.index(text)]))
 
 
-def figures(*known: int) -> Parameter:
+def figures(help_: str, *known: int) -> Parameter:
     """Return what makes an argument take some of the paper's figures, separated by spaces."""
     words = [str(figure) for figure in known]
     one = _read(f"among {', '.join(words)}", lambda _, text: known[words.index(text)])
@@ -79,6 +79,7 @@ def figures(*known: int) -> Parameter:
         validator=lambda _, values: refuse_repeats("--figure", values),
         consume_multiple=True,
         metavar="INT...",
+        help=help_,
         show_default=_spaced,
     )
 
