@@ -1,7 +1,5 @@
 """What becomes of a coefficient of restitution, by the way in which it is asked for."""
 
-from textwrap import fill
-
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -19,16 +17,15 @@ def draw_strikes(rows: pd.DataFrame, plain: pd.DataFrame, best: pd.DataFrame) ->
     for axes, first, last in zip(grid, plain.itertuples(), best.itertuples(), strict=True):
         mine, look = rows[rows["engine"] == last.engine], style_of(str(last.engine))
         axes.plot([0.0, 1.0], [0.0, 1.0], color="#999999", linewidth=0.8, label="as asked for")
-        _way(axes, mine[mine["way"] == last.way], look.colour, "-", "best way, named above")
+        _way(axes, mine[mine["way"] == last.way], look.colour, "-", "best way")
         usual = mine[(mine["way"] == first.way) & (mine["varied"] == "")]
         _way(axes, usual, "#000000", "--", "plainest way")
-        axes.set_title(f"{title_of(str(last.engine))}\n{fill(str(last.way), 27)}", fontsize=8.5)
+        axes.set_title(title_of(str(last.engine)), fontsize=10.5)
         axes.set(xlim=(-0.03, 1.03), ylim=(-0.05, TOP))
         axes.grid(alpha=0.25)
-    drawing.legend(*grid[0].get_legend_handles_labels(), loc="outside upper center", ncols=3,
-                   frameon=False, fontsize=9)  # fmt: skip
-    drawing.supylabel("speed of the corner, after over before", fontsize=10)
+    drawing.supylabel("found: speed of the corner, after over before", fontsize=10)
     drawing.supxlabel("coefficient of restitution that was asked for", fontsize=10)
+    grid[0].legend(loc="upper left", frameon=False, fontsize=8.5)
     return drawing
 
 
