@@ -5,10 +5,10 @@ block about its corner O, and a positive ground acceleration drives it to theta 
 are ground times, from the start of the base motion.
 """
 
-from analytic.block import GRAVITY, RigidBlock, Rocker, housner_restitution
+from analytic.block import GRAVITY, RigidBlock, housner_restitution
 from analytic.cases import peak_ratios
 from analytic.conditioning import condition_numbers, conditioning, sensitivities, sensitivity
-from analytic.frame import RockingFrame, frame_restitution
+from analytic.frame import Rocker, RockingFrame, frame_restitution
 from analytic.frame_forces import frame_demands
 from analytic.maps import Modes, overturning_modes
 from analytic.models import MODELS

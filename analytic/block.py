@@ -2,44 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
 from analytic.checks import LEAST, measurable, within
 
 GRAVITY = 9.81
 """g [m/s2] of every block, amplitude and record: rounded, not the standard gravity of 9.80665."""
-
-
-class Rocker(Protocol):
-    """What rocks as a block does: alpha, p and the restitution say all of its motion."""
-
-    @property
-    def width(self) -> float:
-        """B [m], of what turns."""
-
-    @property
-    def height(self) -> float:
-        """H [m], of what turns."""
-
-    @property
-    def R(self) -> float:  # noqa: N802
-        """Half of its diagonal [m]."""
-
-    @property
-    def gravity(self) -> float:
-        """G [m/s2]."""
-
-    @property
-    def alpha(self) -> float:
-        """Slenderness angle [rad]; also the critical rotation."""
-
-    @property
-    def p(self) -> float:
-        """Frequency parameter [rad/s]."""
-
-    @property
-    def restitution(self) -> float:
-        """Ratio of the angular velocities after and before an impact."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,13 +83,7 @@ class RigidBlock(Upright):
 
 
 def restitution_or(given: float | None, usual: float) -> float:
-    """Return a velocity ratio as it is given, or the usual one, 0 if that is negative, for None.
-
-    Raises
-    ------
-    ValueError
-        If the given one is outside [0, 1].
-    """
+    """Return a velocity ratio as it is given, or the usual one, 0 if that is negative, for None."""
     return max(usual, 0.0) if given is None else within("restitution", given, 0.0, 1.0)
 
 

@@ -115,13 +115,9 @@ def solve_pulses(
         end = End(BROKEN, 0.0, 0, 0, 0, 0.0, 0.0, 0.0)
         if abs(over) < math.inf:
             end = march(law, exactly, pulse, UPRIGHT, above, notes, work)
-        ends[0, i], ends[1, i], ends[2, i], ends[3, i] = (
-            end.outcome,
-            end.peak,
-            end.steps,
-            end.impacts,
-        )
-        ends[4, i], ends[5, i], ends[6, i], ends[7, i] = end.events, end.time, end.y, end.v
+        ends[0, i], ends[1, i], ends[2, i] = end.outcome, end.peak, end.steps
+        ends[3, i], ends[4, i], ends[5, i] = end.impacts, end.events, end.time
+        ends[6, i], ends[7, i] = end.y, end.v
     return ends
 
 

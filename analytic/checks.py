@@ -1,6 +1,7 @@
 """Checks of arguments: each returns a float, or raises ValueError with one clear line."""
 
 import math
+from collections.abc import Callable
 
 LEAST, MOST = 1e-150, 1e150
 """Range of lengths, frequencies and accelerations: floating point holds their squares and ratios,
@@ -48,6 +49,31 @@ def sized(name: str, value: float, least: float = LEAST) -> float:
     if number != 0.0 and not least <= abs(number) <= MOST:
         raise ValueError(f"{name} is {value!r}; it must be 0, or of a size {least:.3g} to {MOST:g}")
     return number
+
+
+def start_of(
+    start: tuple[float, float],
+    names: tuple[str, str] = ("theta", "rate"),
+    words: str = "theta [rad] and theta' [rad/s]",
+    least: float = LEAST,
+) -> tuple[float, float]:
+    """Return both numbers of a start unless one is not `sized`, the first from the least on."""
+    try:
+        first, second = start
+    except (TypeError, ValueError):
+        raise ValueError(f"start is {start!r}; it must be {words}") from None
+    return sized(f"{names[0]} of the start", first, least), sized(
+        f"{names[1]} of the start", second
+    )
+
+
+def check_tilt(theta: float, rate: float, balance: float, still: Callable[[], bool]) -> None:
+    """Refuse a start on the block's side, or in balance where nothing moves, if all is still."""
+    if abs(theta) >= 0.5 * math.pi:
+        raise ValueError(f"theta of the start is {theta!r}; it must be between -pi/2 and pi/2 rad")
+    if abs(theta) == balance and rate == 0.0 and still():
+        words = "it must not be the unstable equilibrium where nothing moves"
+        raise ValueError(f"start is {(theta, rate)!r}; {words}")
 
 
 def whole(name: str, value: float, most: int) -> int:

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.block import Rocker
 from analytic.cases import housner_restitutions, peak_ratios
+from analytic.frame import Rocker
 from analytic.kernels.excursions import MARCH, workspace
 from analytic.kernels.law import Notes
 from analytic.kernels.taylor import TOLERANCE, accuracy

@@ -7,8 +7,9 @@ import math
 
 import numpy as np
 
-from analytic.block import RigidBlock, Rocker
+from analytic.block import RigidBlock
 from analytic.checks import finite, positive
+from analytic.frame import Rocker
 from analytic.models import find_model
 
 
@@ -16,12 +17,8 @@ def quarter_period(block: Rocker, theta: float, model: str = "exact") -> float:
     """Return the time [s] that a block released at rest takes to its impact.
 
     Linear models: acosh(c/(c - theta))/k, the exact one by elliptic integrals (Housner 1963 gives
-    the first; Yim, Chopra and Penzien 1980 the second in another form).
-
-    Raises
-    ------
-    ValueError
-        If theta is not between 0 and the rotation at which the model's block overturns.
+    the first; Yim, Chopra and Penzien 1980 the second in another form). ValueError unless theta is
+    between 0 and the rotation at which the model's block overturns.
     """
     from scipy.special import ellipk, ellipkinc
 
@@ -54,12 +51,8 @@ def frictionless_fall(block: RigidBlock, theta: float) -> tuple[float, float]:
 
     It is released on one corner, which slides: the centre of mass falls straight down. With
     z = R cos(alpha - theta) its height, energy gives theta'^2 (B^2 + H^2)/12 + z'^2 = 2 g (z0 - z),
-    and the time is a quadrature, substituted so that the release is regular.
-
-    Raises
-    ------
-    ValueError
-        If theta is not between 0 and alpha, from where the block falls back.
+    and the time is a quadrature, substituted so that the release is regular. ValueError unless
+    theta is between 0 and alpha, from where the block falls back.
     """
     from scipy.integrate import quad
 
@@ -87,12 +80,8 @@ def overturning_amplitude(omega_over_p: float, half_cycles: int = 1) -> float:
 
     Half-sine: (omega/p) sin psi - cos psi = exp(-(p/omega)(pi - psi)); full-sine:
     cos psi - (omega/p) sin psi = exp(-(p/omega)(2 pi - psi)); sin psi = onset/amplitude. Housner
-    (1963) drops the exponential, which is not on the safe side.
-
-    Raises
-    ------
-    ValueError
-        If half_cycles is not 1 or 2, or no amplitude below 1e9 onsets overturns the block so.
+    (1963) drops the exponential, which is not on the safe side. ValueError unless half_cycles is 1
+    or 2, and where no amplitude below 1e9 onsets overturns the block so.
     """
     from scipy.optimize import brentq
 

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from analytic.block import Upright, restitution_or
+from analytic.block import RigidBlock, Upright, restitution_or
 from analytic.checks import finite, measurable
 
 MOST_COLUMNS = 100
@@ -70,6 +70,10 @@ class RockingFrame(Upright):
         """Frequency parameter [rad/s]: sqrt(3g/4R (1 + 2 gamma)/(1 + 3 gamma))."""
         growth = (1.0 + 3.0 * self.load) / (1.0 + 2.0 * self.load)
         return math.sqrt(0.75 * self.gravity / (self.R * growth))
+
+
+Rocker = RigidBlock | RockingFrame
+"""What rocks as a block does: alpha, p and the restitution say all of its motion."""
 
 
 def frame_restitution(alpha: float, load: float) -> float:

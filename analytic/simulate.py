@@ -7,8 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.block import RigidBlock, Rocker
+from analytic.block import RigidBlock
 from analytic.checks import within
+from analytic.frame import Rocker
 from analytic.kernels.excursions import BROKEN, MARCH, TOO_LONG, End, workspace
 from analytic.kernels.forces import NOTHING_YET
 from analytic.kernels.law import IMPACT, RESTED, UPLIFT, Notes

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.checks import sized
+from analytic.checks import start_of
 from analytic.kernels.rest import EQUAL
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Outcome, Reason, Response
@@ -102,7 +102,7 @@ def slid(
     The last slip is as far as it got.
     """
     began = time.perf_counter()
-    x, v = _checked(start)
+    x, v = start_of(start, ("x", "x'"), "x [m] and x' [m/s]")
     legs: list[Leg] = []
     end = _follow(block, motion.segments(), x, v, math.inf if until is None else until, legs)
     if end is None:
@@ -119,14 +119,6 @@ def slid(
         wall_s=wall_s,
         history=None if sampled is None else _history(legs, sampled),
     )
-
-
-def _checked(start: tuple[float, float]) -> tuple[float, float]:
-    try:
-        x, v = start
-    except (TypeError, ValueError):
-        raise ValueError(f"start is {start!r}; it must be x [m] and x' [m/s]") from None
-    return sized("x of the start", x), sized("x' of the start", v)
 
 
 def _follow(

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.block import Rocker
-from analytic.checks import finite, sized
+from analytic.checks import check_tilt, finite, start_of
+from analytic.frame import Rocker
 from analytic.kernels.law import FloatArray, Law, Start
 from analytic.kernels.rest import strongest_between
 from analytic.models import Model, find_model
@@ -76,25 +76,11 @@ def folded(
 ) -> Start:
     """Return a start folded to one side, in units of 1/p; the rest is for the errors.
 
-    Raises
-    ------
-    ValueError
-        If they are not two finite numbers, abs(theta) is pi/2 or more, where the side of the block
-        lies on the ground, or the block would balance for ever: at rest at the saddle of the
-        model, and no motion to disturb it; or if the first of the times is before a start off rest.
+    ValueError unless they are two finite numbers, `checks.check_tilt` allows them and, off rest,
+    no time is before the start.
     """
-    try:
-        theta, rate = start
-    except (TypeError, ValueError):
-        raise ValueError(f"start is {start!r}; it must be theta [rad] and theta' [rad/s]") from None
-    theta = sized("theta of the start", theta, LEAST_TILT * block.alpha)
-    rate = sized("rate of the start", rate)
-    if abs(theta) >= 0.5 * math.pi:
-        raise ValueError(f"theta of the start is {theta!r}; it must be between -pi/2 and pi/2 rad")
-    if abs(theta) == law.saddle and rate == 0.0 == strongest(motion):
-        raise ValueError(
-            f"start is {start!r}; it must not be the unstable equilibrium where nothing moves"
-        )
+    theta, rate = start_of(start, least=LEAST_TILT * block.alpha)
+    check_tilt(theta, rate, law.saddle, lambda: strongest(motion) == 0.0)
     leaning = theta if theta != 0.0 else rate
     side = math.copysign(1.0, leaning) if leaning != 0.0 else 0.0
     if side != 0.0 and len(times) and times[0] < 0.0:

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
-from analytic.block import Rocker
 from analytic.checks import positive
+from analytic.frame import Rocker
 from analytic.kernels.closed_form import free_peak
 from analytic.kernels.excursions import (
     AT_REST,

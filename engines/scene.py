@@ -12,9 +12,9 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from analytic.block import RigidBlock, Rocker, Upright
-from analytic.checks import finite, positive, sized
-from analytic.frame import RockingFrame
+from analytic.block import RigidBlock, Upright
+from analytic.checks import check_tilt, finite, positive, start_of
+from analytic.frame import Rocker, RockingFrame
 from analytic.motion import SEGMENT_COLUMNS, Motion
 from analytic.slide import SlidingBlock
 from engines.settings import one_of
@@ -323,21 +323,11 @@ class Scene:
         put("times", _increasing("times", self.times))
         put("settings", MappingProxyType(dict(self.settings)))
 
-    def _checked_start(self, start: Sequence[float]) -> tuple[float, float]:
-        try:
-            theta, rate = start
-        except (TypeError, ValueError):
-            words = "it must be theta [rad] and theta' [rad/s]"
-            raise ValueError(f"start is {start!r}; {words}") from None
-        theta, rate = sized("theta of the start", theta), sized("rate of the start", rate)
-        if not layout_of(self.system, self.density, self.depth, (theta, rate)).rocking:
-            return theta, rate  # of what slides: place [m] and velocity [m/s]
-        if abs(theta) >= 0.5 * math.pi:
-            words = "it must be between -pi/2 and pi/2 rad"
-            raise ValueError(f"theta of the start is {theta!r}; {words}")
-        if abs(theta) == self.system.alpha and rate == 0.0 and not _moves(self.motion):
-            words = "it must not be the unstable equilibrium where nothing moves"
-            raise ValueError(f"start is {start!r}; {words}")
+    def _checked_start(self, start: tuple[float, float]) -> tuple[float, float]:
+        theta, rate = start_of(start)
+        # of what slides they are place [m] and velocity [m/s]
+        if layout_of(self.system, self.density, self.depth, (theta, rate)).rocking:
+            check_tilt(theta, rate, self.system.alpha, lambda: not _moves(self.motion))
         return theta, rate
 
     @property

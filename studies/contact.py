@@ -13,8 +13,7 @@ import pandas as pd
 from cyclopts import Parameter
 
 from analytic import conditioning
-from analytic.block import Rocker
-from analytic.frame import RockingFrame
+from analytic.frame import Rocker, RockingFrame
 from analytic.response import Outcome
 from engines import ENGINES, core_engines
 from engines.declaration import Stepping

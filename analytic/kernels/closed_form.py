@@ -24,16 +24,7 @@ def sine_minus_sinh(x: float, u: float) -> float:
     if max(x, u) > SERIES_BELOW:
         first = math.sin(x) / x if x > 0.0 else 1.0
         return first - math.sinh(u) / u
-    total = 0.0
-    px, pu, factorial = 1.0, 1.0, 1.0
-    for i in range(1, 11):
-        px *= -x * x
-        pu *= u * u
-        factorial *= 2 * i * (2 * i + 1)
-        total += (px - pu) / factorial
-        if abs(px) + pu <= LOST * factorial * abs(total):
-            break
-    return total
+    return difference(x, u, 1)
 
 
 def cosh_minus_cosine(x: float, u: float) -> float:
@@ -41,13 +32,18 @@ def cosh_minus_cosine(x: float, u: float) -> float:
     if max(x, u) > SERIES_BELOW:
         second = 2.0 * square(math.sin(0.5 * x) / x) if x > 0.0 else 0.5
         return 2.0 * square(math.sinh(0.5 * u) / u) - second
+    return -difference(x, u, 2)
+
+
+def difference(x: float, u: float, first: int) -> float:
+    """Return the sum of ((-x^2)^i - u^(2 i))/(2 i + first)! from i = 1 on; first is 1 or 2."""
     total = 0.0
-    px, pu, factorial = 1.0, 1.0, 2.0
+    px, pu, factorial = 1.0, 1.0, float(first)
     for i in range(1, 11):
         px *= -x * x
         pu *= u * u
-        factorial *= (2 * i + 1) * (2 * i + 2)
-        total += (pu - px) / factorial
+        factorial *= (2 * i + first - 1) * (2 * i + first)
+        total += (px - pu) / factorial
         if abs(px) + pu <= LOST * factorial * abs(total):
             break
     return total

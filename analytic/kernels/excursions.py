@@ -10,14 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.kernels.closed_form import free_peak, linear_state
-from analytic.kernels.forces import (
-    forget_fall,
-    watch_free,
-    watch_rest,
-    watch_step,
-    watch_to_passing,
-    watch_train,
-)
+from analytic.kernels.forces import forget_fall, watch_free, watch_rest, watch_step, watch_train
 from analytic.kernels.forms import Kernel
 from analytic.kernels.law import (
     IMPACT,
@@ -42,13 +35,7 @@ from analytic.kernels.polynomial import (
     trend,
     value,
 )
-from analytic.kernels.rest import (
-    acceleration,
-    after_impact,
-    ground,
-    next_uplift,
-    segment_at,
-)
+from analytic.kernels.rest import acceleration, after_impact, ground, next_uplift, segment_at
 from analytic.kernels.taylor import (
     Accuracy,
     expand_exact,
@@ -228,21 +215,11 @@ def march(
     notes: Notes,
     work: FloatArray,
 ) -> End:
-    """Follow one response.
+    """Follow one response, to the end of the last segment, on which nothing moves.
 
-    Parameters
-    ----------
-    law : Law
-    accuracy : Accuracy
-        Of the exact model; for a linear one the order is that of the series that brackets events.
-    moving : ndarray (m, 7)
-        Ground motion, of which nothing moves on the last segment. The response is followed to its
-        end; outcome and peak of what comes after follow from energy.
-    start : Start, state at time zero
-    above : float
-        The peak is looked for above this rotation [rad]; where nobody asks for it, time is saved.
-    notes : Notes
-    work : ndarray (MAX_DEPTH + 12, ORDER + 1), spare
+    Outcome and peak of what comes after follow from energy. The accuracy is that of the exact
+    model; for a linear one the order is that of the series that brackets events. The peak is looked
+    for above a rotation [rad]: where nobody asks for it, time is saved. work is a `workspace`.
     """
     last, limits = moving[-1][1], notes.limits
     side, y, v = start
@@ -272,8 +249,7 @@ def march(
         if step.kind == LOST:
             return End(BROKEN, peak, steps, impacts, events, tau, y, v)
         n = sample_step(law, segment, begin, work[4], accuracy.order, step, notes, n)
-        watch_to_passing(limits, law, accuracy.order, step.h, step.x, work, step.y)
-        watch_step(limits, accuracy.order, step.h, step.x, work)
+        watch_step(limits, law, accuracy.order, step.h, step.x, work, step.y)
         tau, y, v, peak, lead = step.tau, step.y, step.v, step.peak, 0
         if step.kind == FALLEN:
             forget_fall(limits)

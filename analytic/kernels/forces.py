@@ -66,12 +66,21 @@ def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -
     watch(limits, law, -side, a, 0.0, 0.0)
 
 
-def watch_to_passing(
+def watch_step(
     limits: FloatArray, law: Law, order: int, h: float, x: float, work: FloatArray, y: float
 ) -> None:
-    """Watch a step that ends beyond the critical rotation, at y, until it passes that."""
-    if len(limits) == 0 or y < law.alpha:
+    """Watch a step that ends at y; one beyond the critical rotation first until it passes that."""
+    if len(limits) == 0:
         return
+    passed = passing(law, order, x, work) if y >= law.alpha else -1.0
+    if passed > 0.0:
+        watch_part(limits, order, h, passed, work)
+        limits[2], limits[3] = limits[0], limits[1]
+    watch_part(limits, order, h, x, work)
+
+
+def passing(law: Law, order: int, x: float, work: FloatArray) -> float:
+    """Return at which part of a step it passes the critical rotation last, -1 if nowhere."""
     beyond, spare = work[5], work[6:]
     for i in range(order + 1):
         beyond[i] = work[4][i]
@@ -81,11 +90,7 @@ def watch_to_passing(
     while root < x:
         passed = root
         root = next_root(beyond, order, root, spare)
-    if passed < 0.0 and beyond[0] < 0.0:
-        passed = x
-    if passed > 0.0:
-        watch_step(limits, order, h, passed, work)
-        limits[2], limits[3] = limits[0], limits[1]
+    return x if passed < 0.0 and beyond[0] < 0.0 else passed
 
 
 def forget_fall(limits: FloatArray) -> None:
@@ -94,15 +99,13 @@ def forget_fall(limits: FloatArray) -> None:
         limits[0], limits[1] = limits[2], limits[3]
 
 
-def watch_step(limits: FloatArray, order: int, h: float, x: float, work: FloatArray) -> None:
+def watch_part(limits: FloatArray, order: int, h: float, x: float, work: FloatArray) -> None:
     """Watch a part of a step.
 
     The least normal force N is a minimum of its polynomial. The friction is the largest ratio mu
     of abs(T) to N: T - mu N has no positive maximum, and each one there is gives a better mu
     (Dinkelbach 1967).
     """
-    if len(limits) == 0:
-        return
     normal, tangential, excess, spare = work[5], work[6], work[7], work[8:]
     degree = order - 2
     expand_forces(degree, h, work[:4], normal, tangential, excess)

@@ -210,16 +210,13 @@ def highest(
     last = value(d, order, end)
     if last > top:
         top, where = last, end
+    if trend(d, order, lead) != 0:
+        return top, where
     rate = work[0]
     shift = max(lead, 1)
     degree = order - shift
-    least = most = 0.0
     for i in range(degree + 1):
         rate[i] = (i + shift) * d[i + shift]
-        least += min(rate[i], 0.0) if i > 0 else rate[i]
-        most += max(rate[i], 0.0) if i > 0 else rate[i]
-    if least > 0.0 or most < 0.0:
-        return top, where
     once = trend(rate, degree, 0) != 0
     x = next_root(rate, degree, 0.0, work[1:])
     while x < end:

@@ -54,93 +54,66 @@ at rest."""
 
 @dataclass(slots=True)
 class ContactState:
-    """What holds a block, and what was seen of it.
+    """What holds a block, and what was seen of it."""
 
-    planar, moving, base_velocity, welded, single, stacked: whether bodies have three coordinates;
-        whether the base moves, with a velocity, or as a body of its own; whether all corners of a
-        contact share one pair; whether bodies rest on others.
-    by_phase, reflects, preload: what changes with the step, as in the settings.
-    width, height: of a body that rocks, the half of the latter [m].
-    damping, sliding_damping, stiffness, impedance: of the reference, the first 0 where it stays as
-        the model has it.
-    carry: gap [m] within which the pivot stays in contact; 0 for no such thing.
-    touching, pairs, corners: contacts of the layout, pairs that touch, and how many of them at each
-        side of a contact.
-    ordinary_squared, impedance_squared, growth, steady: squares of the ordinary step [s] and of the
-        impedance; how much what is returned may grow in a step, and where the block was released.
-    dt, time, sliding: length and end of the last step [s], and the damping along the base in it.
-    moved, raised, velocity, lag: place [m] and velocity [m/s] of the base, its height above where
-        it began, and how far [m] a welded one was at most from where it should have been.
-    aloft, released, rate, gained, returned, last_dt: whether the last step was of a swing, and
-        every step since a release; the angular velocity [rad/s], what it gained [rad/s2], the part
-        of the pivot's velocity that was returned, and the length of that step [s].
-    """
-
-    planar: bool = False
-    moving: bool = False
-    base_velocity: bool = False
-    welded: bool = False
-    single: bool = False
-    stacked: bool = False
-    by_phase: bool = False
+    planar: bool = False  # bodies have three coordinates
+    moving: bool = False  # the base moves
+    base_velocity: bool = False  # with a velocity
+    welded: bool = False  # as a body of its own
+    single: bool = False  # all corners of a contact share one pair
+    stacked: bool = False  # bodies rest on others
+    by_phase: bool = False  # what changes with the step, as in the settings; so do the next two
     reflects: bool = False
     preload: bool = False
-    width: float = 0.0
-    height: float = 0.0
+    width: float = 0.0  # of a body that rocks [m]
+    height: float = 0.0  # the half of it [m]
+    # of the reference, as are the next three; 0 where it stays as the model has it
     damping: float = 0.0
     sliding_damping: float = 0.0
     stiffness: float = 0.0
     impedance: float = 0.0
-    carry: float = 0.0
-    touching: int = 0
-    pairs: int = 0
-    corners: int = 0
-    ordinary_squared: float = 0.0
+    carry: float = 0.0  # gap within which the pivot stays in contact [m]; 0 for no such thing
+    touching: int = 0  # contacts of the layout
+    pairs: int = 0  # that touch
+    corners: int = 0  # how many pairs are at each side of a contact
+    ordinary_squared: float = 0.0  # the ordinary step's square [s2]
     impedance_squared: float = 0.0
-    growth: float = 0.0
-    steady: float = 0.0
-    dt: float = 0.0
-    time: float = 0.0
-    sliding: float = 0.0
-    moved: float = 0.0
-    raised: float = 0.0
-    velocity: float = 0.0
-    lag: float = 0.0
-    aloft: bool = False
-    released: bool = False
-    rate: float = 0.0
-    gained: float = 0.0
-    returned: float = 0.0
-    last_dt: float = 0.0
+    growth: float = 0.0  # how much what is returned may grow in a step
+    steady: float = 0.0  # and where the block was released
+    dt: float = 0.0  # length of the last step [s]
+    time: float = 0.0  # its end [s]
+    sliding: float = 0.0  # the damping along the base in it
+    moved: float = 0.0  # place of the base [m]
+    raised: float = 0.0  # its height above where it began [m]
+    velocity: float = 0.0  # of the base [m/s]
+    lag: float = 0.0  # how far a welded base was at most from where it should have been [m]
+    aloft: bool = False  # the last step was of a swing
+    released: bool = False  # and so was every step since a release
+    rate: float = 0.0  # the angular velocity [rad/s]
+    gained: float = 0.0  # what it gained in the last step [rad/s2]
+    returned: float = 0.0  # part of the pivot's velocity that was
+    last_dt: float = 0.0  # length of that step [s]
 
 
 class Arrays(NamedTuple):
     """The library's arrays, and three of what it is asked about.
 
-    position, velocity: of every joint, a welded base's last. A body in the plane has x, z [m] from
-        its home, theta [rad], and their rates; a free one x, y, z [m] and a quaternion, its real
-        part first, and a velocity [m/s] and angular velocity [rad/s].
-    pair_reference, pair_friction, pair_margin (pairs, ...): the two numbers of `solref` along the
-        normal and along the base, and the gap [m] from which on a pair acts.
-    surface_velocity (geoms, 6), base_place (bodies moved, 3): of each shape's surface [m/s, rad/s],
-        first that of the base; where the base is put [m].
-    pairs (pairs, 8): a row for each of the library's, columns `SIDE` to `RESISTED`.
-    homes (bodies, 3): where the centre is at rest, along and above the base, and half of the height
-        [m].
-    state (bodies, 4): the last one that was read, a `Pose` a row.
+    Positions and velocities are of every joint, a welded base's last: of a body in the plane x, z
+    [m] from its home, theta [rad], and their rates; of a free one x, y, z [m] and a quaternion, its
+    real part first, and a velocity [m/s] and angular velocity [rad/s].
     """
 
     position: FloatArray
     velocity: FloatArray
     gravity: FloatArray
-    pair_reference: FloatArray
-    pair_friction: FloatArray
-    pair_margin: FloatArray
-    surface_velocity: FloatArray
-    base_place: FloatArray
-    pairs: FloatArray
-    homes: FloatArray
-    state: FloatArray
+    pair_reference: FloatArray  # (pairs, 2), the numbers of `solref` along the normal
+    pair_friction: FloatArray  # (pairs, 2), and along the base
+    pair_margin: FloatArray  # (pairs,), gap from which on a pair acts [m]
+    surface_velocity: FloatArray  # (geoms, 6), first that of the base [m/s, rad/s]
+    base_place: FloatArray  # (bodies moved, 3), where the base is put [m]
+    pairs: FloatArray  # (pairs, 8), a row for each of the library's, columns `SIDE` to `RESISTED`
+    homes: FloatArray  # (bodies, 3), its centre at rest along and above the base, half height [m]
+    state: FloatArray  # (bodies, 4), the last one that was read, a `Pose` a row
 
 
 class Forces(NamedTuple):

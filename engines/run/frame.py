@@ -10,12 +10,11 @@ from engines.run.watch import (
     BEAM_LOST,
     BEAM_SLIPPED,
     BEAM_THROWN,
-    HOLD_WIDTHS,
     PARTED,
     PARTED_PART,
-    SLIDE_WIDTHS,
     THROWN_WIDTHS,
     Watch,
+    check_slide,
 )
 from engines.scene import Layout
 from engines.world import FloatArray
@@ -23,25 +22,18 @@ from engines.world import FloatArray
 
 @dataclass(slots=True)
 class Spread:
-    """How far the bodies of a frame came apart.
+    """How far the bodies of a frame came apart."""
 
-    Attributes
-    ----------
-    columns : how many there are, and the number of the beam's row; 0 where there is no beam
-    homes, level : where the beam's centre is while a column's is at 0 [m]
-    parting : largest difference of two columns' rotations until one passes alpha [rad]
-    peak, tilt : largest rotations until now of the columns and of the beam [rad]
-    drift, slide : how far it slid along the tops [m] at most, at all and until one passes alpha
-    """
-
+    # how many there are, and the number of the beam's row; 0 where there is no beam
     columns: int = 0
-    homes: float = 0.0
-    level: float = 0.0
+    homes: float = 0.0  # where the beam's centre is along the base while a column's is at 0 [m]
+    level: float = 0.0  # and above it [m]
+    # largest difference of two columns' rotations until one passes alpha [rad]
     parting: float = 0.0
-    peak: float = 0.0
-    tilt: float = 0.0
-    drift: float = 0.0
-    slide: float = 0.0
+    peak: float = 0.0  # largest rotation of the columns until now [rad]
+    tilt: float = 0.0  # and of the beam [rad]
+    drift: float = 0.0  # how far it slid along the tops at most [m]
+    slide: float = 0.0  # and until a column passes alpha [m]
 
 
 def begin_spread(layout: Layout) -> Spread:
@@ -86,12 +78,8 @@ def come_apart(spread: Spread, watch: Watch, raised: float) -> None:
         watch.problem, watch.far = PARTED, spread.parting / watch.alpha
     elif raised > THROWN_WIDTHS * width:
         watch.problem, watch.far = BEAM_THROWN, raised
-    elif watch.slides:
-        return
-    elif watch.lands and spread.slide > HOLD_WIDTHS * width:
-        watch.problem, watch.far = BEAM_SLIPPED, spread.slide
-    elif spread.slide > SLIDE_WIDTHS * width:
-        watch.problem, watch.far = BEAM_LOST, spread.slide
+    else:
+        check_slide(watch, spread.slide, BEAM_SLIPPED, BEAM_LOST)
 
 
 def observables_of(spread: Spread, alpha: float) -> Mapping[str, float]:

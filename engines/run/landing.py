@@ -91,48 +91,31 @@ TOUCHING = 1e-9
 
 @dataclass(slots=True)
 class Landing:
-    """What is known of the block, and of what went before.
+    """What is known of the block, and of what went before."""
 
-    Attributes
-    ----------
-    dt, least, longest_rest, shortest : the ordinary step, the shortest one, the longest one of a
-        block at rest, and the shortest swing that is followed [s]
-    width, half_height, touching : of the block; height below which a corner touches the base [m]
-    fall : p^2 sin(alpha) [rad/s2], by which an upright block on one corner falls to the other
-    swing_part, load_part : parts of a swing and of a load that a step may cover
-    settled, part : change of the rate, by its part, with which an impact is over; moment of a
-        step's velocity
-    side : corner that the block turns about
-    resting, bouncing, approaching : the block is at rest, an impact began its swing, the next one
-        is approached
-    strikes, strike_s : steps through the present impact, and their length [s]
-    last_dt, last_approach, last_rate : length [s] of the last step, whether it was of an approach,
-        the rate [rad/s] before it
-    between : time [s] between the moments of the last two velocities
-    """
-
-    dt: float
-    least: float
-    longest_rest: float
-    shortest: float
+    dt: float  # the ordinary step [s]
+    least: float  # the shortest one [s]
+    longest_rest: float  # the longest one of a block at rest [s]
+    shortest: float  # the shortest swing that is followed [s]
     width: float
     half_height: float
-    touching: float
+    touching: float  # height below which a corner touches the base [m]
+    # p^2 sin(alpha) [rad/s2], by which an upright block on one corner falls to the other
     fall: float
-    swing_part: float
-    load_part: float
-    settled: float
-    part: float
-    side: float
+    swing_part: float  # of a swing, that a step may cover
+    load_part: float  # of a load
+    settled: float  # change of the rate, by its part, with which an impact is over
+    part: float  # moment of a step's velocity
+    side: float  # corner that the block turns about
     resting: bool
-    bouncing: bool = False
-    approaching: bool = False
-    strikes: int = 0
-    strike_s: float = 0.0
-    last_dt: float = 0.0
-    last_approach: bool = False
-    last_rate: float = 0.0
-    between: float = 0.0
+    bouncing: bool = False  # an impact began its swing
+    approaching: bool = False  # the next impact is approached
+    strikes: int = 0  # steps through the present impact
+    strike_s: float = 0.0  # their length [s]
+    last_dt: float = 0.0  # length of the last step [s]
+    last_approach: bool = False  # whether it was of an approach
+    last_rate: float = 0.0  # rate before it [rad/s]
+    between: float = 0.0  # time between the moments of the last two velocities [s]
 
 
 def begin_landing(scene: Scene, dt_s: float, moment: Moment, resolution: Resolution) -> Landing:

@@ -30,49 +30,33 @@ STOP, DISTANCE, SINCE = range(3)
 
 @dataclass(slots=True)
 class Slide:
-    """What was seen of a box until now; on says whether there is one.
-
-    Attributes
-    ----------
-    home, half_height, width : of the box [m]
-    slow, still : velocity up to which it does not slide [m/s], time after which it is at rest [s]
-    motion_end, end : of the motion and of the observation [s]
-    keeps_rows : whether a history is wanted
-    place, time : last place relative to the base [m], and when [s]
-    origin, since : where and since when it slides or rests
-    stays_at, stays_since : where and since when it has moved by no more than a tremor
-    way : which way it slides, 0 while it does not
-    rows, slips : how many rows there are, and how many slips have ended
-    lift, depth, level, turn : how high and deep its centre was beyond where it begins, and where
-        it lies [m]; how far it turned [rad]
-    problem, far : see `watch`, and by how much [m]
-    """
+    """What was seen of a box until now; on says whether there is one."""
 
     on: bool = False
-    home: float = 0.0
+    home: float = 0.0  # where its centre begins [m]
     half_height: float = 0.0
     width: float = 0.0
-    slow: float = 0.0
-    still: float = 0.0
+    slow: float = 0.0  # velocity up to which it does not slide [m/s]
+    still: float = 0.0  # time after which it is at rest [s]
     motion_end: float = 0.0
-    end: float = 0.0
-    keeps_rows: bool = False
-    place: float = 0.0
-    origin: float = 0.0
-    stays_at: float = 0.0
+    end: float = 0.0  # of the observation [s]
+    keeps_rows: bool = False  # a history is wanted
+    place: float = 0.0  # last one relative to the base [m]
+    origin: float = 0.0  # where it slides or rests from, `since` when
+    stays_at: float = 0.0  # where it has moved by no more than a tremor, `stays_since` when
     time: float = 0.0
     since: float = 0.0
     stays_since: float = 0.0
-    way: float = 0.0
+    way: float = 0.0  # which way it slides, 0 while it does not
     rows: int = 0
-    slips: int = 0
-    lift: float = 0.0
-    turn: float = 0.0
-    depth: float = 0.0
-    level: float = 0.0
+    slips: int = 0  # how many have ended
+    lift: float = 0.0  # how high its centre was beyond where it begins [m]
+    turn: float = 0.0  # how far it turned [rad]
+    depth: float = 0.0  # how deep its centre was [m]
+    level: float = 0.0  # where it lies [m]
     overturned: bool = False
     done: bool = False
-    problem: int = 0
+    problem: int = 0  # as of `watch`
     far: float = 0.0
 
 
@@ -137,9 +121,7 @@ def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, po
 def end_slip(slide: Slide, slips: FloatArray, time: float, place: float) -> None:
     """Write the slip that is under way, if there is one, down as ended at a time and place."""
     if slide.way != 0.0 and abs(place - slide.origin) > LEAST_SLIP * slide.width:
-        number = slide.slips
-        slips[number, STOP], slips[number, SINCE] = time, slide.since
-        slips[number, DISTANCE] = place - slide.origin
+        put(slips, slide.slips, (time, place - slide.origin, slide.since, 0.0))
         slide.slips += 1
 
 

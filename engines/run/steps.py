@@ -37,42 +37,27 @@ NEVER = Load(math.inf, math.inf, 0.0)
 
 @dataclass(slots=True)
 class Pace:
-    """How a run steps, and where it is: between the stops that a step must not pass, and the loads.
+    """How a run steps, and where it is between the stops that no step may pass, and the loads."""
 
-    Attributes
-    ----------
-    policy : which of `POLICIES` chooses
-    dt, part, gravity : ordinary step [s]; moment of a step's velocity, as its part; [m/s2]
-    felt : whether a block on a base at rest carries the body force of the base's acceleration
-    same : difference [s] of two times that are the same
-    motion_end, end : of the motion, and of the observation at the least [s]
-    time, last_dt : end and length of the last step [s]; before 0 the base is at rest
-    velocity, place : of the base at the moment of the last velocity [m/s], and at the step's end
-    stops, loads : how many have passed
-    left, time_to_uplift : until the next stop; until a block at rest may lift, or all ends [s]
-    loaded, lifts_next : the first load that has not ended has begun; a load is what ends the calm
-    load_s, load_side : how long that load lasts [s], inf if there is none, and its side
-    """
-
-    policy: int
-    dt: float
-    part: float
+    policy: int  # which of `POLICIES` chooses
+    dt: float  # ordinary step [s]
+    part: float  # moment of a step's velocity, as its part
     gravity: float
-    felt: bool
-    same: float
+    felt: bool  # a block on a base at rest carries the body force of the base's acceleration
+    same: float  # difference of two times that are the same [s]
     motion_end: float
-    end: float
-    time: float = 0.0
+    end: float  # of the observation at the least [s]
+    time: float = 0.0  # end of the last step [s]; before 0 the base is at rest
     last_dt: float = 0.0
-    velocity: float = 0.0
-    place: float = 0.0
-    stops: int = 0
+    velocity: float = 0.0  # of the base at the moment of the last velocity [m/s]
+    place: float = 0.0  # of the base at the step's end [m]
+    stops: int = 0  # how many have passed, and how many loads
     loads: int = 0
-    left: float = 0.0
-    time_to_uplift: float = 0.0
-    loaded: bool = False
-    lifts_next: bool = False
-    load_s: float = 0.0
+    left: float = 0.0  # time until the next stop [s]
+    time_to_uplift: float = 0.0  # until a block at rest may lift, or all ends [s]
+    loaded: bool = False  # the first load that has not ended has begun
+    lifts_next: bool = False  # that load is what ends the calm
+    load_s: float = 0.0  # how long it lasts [s], inf if there is none
     load_side: float = 0.0
 
 

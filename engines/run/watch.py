@@ -106,100 +106,67 @@ EVENTS_A_LOOK = 3
 
 @dataclass(slots=True)
 class Watch:
-    """What was seen of a block until now.
+    """What was seen of a block until now."""
 
-    Attributes
-    ----------
-    ahead : part of a step that its velocity is ahead of its end
-    home, half_width, half_height, alpha : where its centre is at rest [m]; of the block [m, m, rad]
-    lift, rest_time, rest_rate : height of the free corner above which it is aloft [m]; time without
-        that after which it is at rest [s], and the rate up to which it may turn then [rad/s]
-    fall, least_fall : rate squared over the rotation [rad/s2] with which it falls back, and the
-        least rotation [rad] from which a fall is seen as one
-    motion_end, watched : end of the motion, and of the observation at the least [s]
-    timed : it ends then, decided or not
-    slides, lands, keeps_rows : it is meant to slide; steps land on impacts of a pivot that has to
-        hold; a history is wanted
-    resting, rocked, lifted, crossed : it is at rest, has left it at some time, is aloft at the last
-        row, has exceeded alpha
-    turned, done : it has turned back after the motion; the response is decided
-    peak : largest rotation [rad]
-    low_since, last_rest, turned_at : since when it has not been aloft (nan while it is), when it
-        last came to rest, and last turned faster than a block at rest may [s]
-    rows, events, uplift : how many there are, and which event is the last uplift
-    slide, sink, sunk, highest : of the pivot [m]; sunk is how deep it was before the block lay
-    beam_slide : how far the beam of a frame slid along the columns' tops [m]
-    give, hop : how deep it was in its base at rest, how high its last swing's pivot hopped [m]
-    lean_side, lean_peak, lean_since : at rest: where it leans, how far it did [rad], since when [s]
-    hovers, loose, props : a skin of the contact holds it above its base; it was seen to rock
-        although no corner's height shows it; its contact holds it leaning
-    landed, landed_s, landed_rate : a swing ended and the next has not begun: when [s], how fast
-    side, from_rest : of the swing: its side, 0 where there is none; an uplift began it
-    count, kept : its rows until now, and how many of them are in `last`
-    first, last, two : rows at both ends of the swing, without the shorter steps of an approach at
-        the last; and the last two rows of all
-    swing_end, swing_theta, swing_dt : time and rotation at its last row, length [s] of its step
-    problem, far : why it is no longer that of a rocking block, and by how much [m]
-    """
-
-    ahead: float
-    home: float
+    ahead: float  # part of a step that its velocity is ahead of its end
+    home: float  # where its centre is at rest [m]
     half_width: float
     half_height: float
     alpha: float
-    lift: float
-    rest_time: float
-    rest_rate: float
-    fall: float
-    least_fall: float
+    lift: float  # height of the free corner above which it is aloft [m]
+    rest_time: float  # time without that after which it is at rest [s]
+    rest_rate: float  # rate up to which it may turn then [rad/s]
+    fall: float  # rate squared over the rotation with which it falls back [rad/s2]
+    least_fall: float  # least rotation from which a fall is seen as one [rad]
     motion_end: float
-    watched: float
-    timed: bool
-    slides: bool
-    lands: bool
-    keeps_rows: bool
+    watched: float  # end of the observation at the least [s]
+    timed: bool  # it ends then, decided or not
+    slides: bool  # it is meant to slide
+    lands: bool  # steps land on impacts of a pivot that has to hold
+    keeps_rows: bool  # a history is wanted
     resting: bool
-    rocked: bool
-    lifted: bool
-    crossed: bool
-    peak: float
-    low_since: float
-    side: float
-    last_rest: float = 0.0
-    turned_at: float = -math.inf
+    rocked: bool  # it has left its rest at some time
+    lifted: bool  # it is aloft at the last row
+    crossed: bool  # it has exceeded alpha
+    peak: float  # largest rotation [rad]
+    low_since: float  # since when it has not been aloft [s], nan while it is
+    side: float  # of the swing, 0 where there is none
+    last_rest: float = 0.0  # when it last came to rest [s]
+    turned_at: float = -math.inf  # when it last turned faster than a block at rest may [s]
     overturned: bool = False
-    turned: bool = False
-    done: bool = False
+    turned: bool = False  # it has turned back after the motion
+    done: bool = False  # the response is decided
     rows: int = 0
     events: int = 0
-    uplift: int = 0
-    slide: float = 0.0
+    uplift: int = 0  # which event is the last uplift
+    slide: float = 0.0  # of the pivot [m], as are the next three
     sink: float = 0.0
-    sunk: float = 0.0
+    sunk: float = 0.0  # how deep it was before the block lay
     highest: float = 0.0
-    beam_slide: float = 0.0
-    give: float = 0.0
-    hop: float = 0.0
-    lean_side: float = 0.0
-    lean_peak: float = 0.0
-    lean_since: float = 0.0
-    hovers: bool = False
-    loose: bool = False
-    props: bool = False
-    landed: bool = False
-    landed_s: float = 0.0
+    beam_slide: float = 0.0  # how far the beam of a frame slid along the columns' tops [m]
+    give: float = 0.0  # how deep it was in its base at rest [m]
+    hop: float = 0.0  # how high its last swing's pivot hopped [m]
+    lean_side: float = 0.0  # where it leans at rest
+    lean_peak: float = 0.0  # how far it did [rad]
+    lean_since: float = 0.0  # since when [s]
+    hovers: bool = False  # a skin of the contact holds it above its base
+    loose: bool = False  # it was seen to rock although no corner's height shows it
+    props: bool = False  # its contact holds it leaning
+    landed: bool = False  # a swing ended and the next has not begun
+    landed_s: float = 0.0  # when [s], and how fast [rad/s]
     landed_rate: float = 0.0
-    from_rest: bool = False
-    count: int = 0
-    kept: int = 0
+    from_rest: bool = False  # an uplift began the swing
+    count: int = 0  # rows of the swing until now
+    kept: int = 0  # how many of them are in `last`
+    # rows at both ends of the swing, the last ones without the shorter steps of an approach
     first: FloatArray = field(default_factory=lambda: np.zeros((EDGE, 4)))
     last: FloatArray = field(default_factory=lambda: np.zeros((EDGE, 4)))
-    two: FloatArray = field(default_factory=lambda: np.zeros((2, 4)))
-    swing_end: float = 0.0
-    swing_theta: float = 0.0
-    swing_dt: float = 0.0
-    problem: int = NO_PROBLEM
-    far: float = 0.0
+    two: FloatArray = field(default_factory=lambda: np.zeros((2, 4)))  # the last two of all
+    swing_end: float = 0.0  # time at the swing's last row [s]
+    swing_theta: float = 0.0  # rotation there [rad]
+    swing_dt: float = 0.0  # length of its step [s]
+    problem: int = NO_PROBLEM  # why it is no longer that of a rocking block
+    far: float = 0.0  # by how much [m]
 
 
 def begin_watch(
@@ -322,12 +289,19 @@ def check(watch: Watch, pose: Pose, low: float, sine: float, cosine: float) -> N
         watch.problem, watch.far = SANK, -low
     elif low > THROWN_WIDTHS * width:
         watch.problem, watch.far = THROWN, low
-    elif watch.slides:
+    else:
+        check_slide(watch, watch.slide, SLIPPED, SLID)
+
+
+def check_slide(watch: Watch, slide: float, slipped: int, lost: int) -> None:
+    """See whether what has to hold slid too far [m]."""
+    width = 2.0 * watch.half_width
+    if watch.slides:
         return
-    elif watch.lands and watch.slide > HOLD_WIDTHS * width:
-        watch.problem, watch.far = SLIPPED, watch.slide
-    elif watch.slide > SLIDE_WIDTHS * width:
-        watch.problem, watch.far = SLID, watch.slide
+    if watch.lands and slide > HOLD_WIDTHS * width:
+        watch.problem, watch.far = slipped, slide
+    elif slide > SLIDE_WIDTHS * width:
+        watch.problem, watch.far = lost, slide
 
 
 def aloft(watch: Watch, events: FloatArray, row: Row, dt_s: float) -> None:
@@ -389,9 +363,7 @@ def note(
     watch: Watch, events: FloatArray, kind: float, time: float, before: float, after: float
 ) -> None:
     """Write an event down."""
-    number = watch.events
-    events[number, KIND], events[number, WHEN] = kind, time
-    events[number, BEFORE], events[number, AFTER] = before, after
+    put(events, watch.events, (kind, time, before, after))
     watch.events += 1
 
 
@@ -472,10 +444,9 @@ def lift_off(watch: Watch) -> float:
     return max((root * a.rate_s - b.rate_s) / (root - 1.0), watch.last_rest)
 
 
-def put(rows: FloatArray, number: int, row: Row) -> None:
+def put(rows: FloatArray, number: int, row: tuple[float, float, float, float]) -> None:
     """Write a row."""
-    rows[number, TIME], rows[number, RATE_S] = row.time, row.rate_s
-    rows[number, THETA], rows[number, RATE] = row.theta, row.rate
+    rows[number, 0], rows[number, 1], rows[number, 2], rows[number, 3] = row
 
 
 def row_of(rows: FloatArray, number: int) -> Row:

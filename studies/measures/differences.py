@@ -17,7 +17,7 @@ from analytic import (
     sensitivities,
     sensitivity,
 )
-from analytic.block import Rocker
+from analytic.frame import Rocker
 from analytic.motion import FloatArray, Motion
 from analytic.response import Outcome, Response
 from studies.cases.paper import PULSES

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analytic.block import Rocker
+from analytic.frame import Rocker
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Response
 from engines.scene import System
