@@ -9,7 +9,8 @@ from typing import Literal
 import numpy as np
 
 from analytic import RockingFrame, SlidingBlock, conditioning, frame_demands, simulate
-from analytic.block import RigidBlock, Rocker
+from analytic.block import RigidBlock
+from analytic.frame import Rocker
 from analytic.motion import SinePulse
 from engines.scene import BEAM_DEPTH, SPACING
 
