@@ -51,20 +51,21 @@ def sized(name: str, value: float, least: float = LEAST) -> float:
     return number
 
 
+TILT = ("theta", "rate", "theta [rad] and theta' [rad/s]")
+PLACE = ("x", "x'", "x [m] and x' [m/s]")
+"""What the two numbers of a start are called, of what rocks and of what slides."""
+
+
 def start_of(
-    start: tuple[float, float],
-    names: tuple[str, str] = ("theta", "rate"),
-    words: str = "theta [rad] and theta' [rad/s]",
-    least: float = LEAST,
+    start: tuple[float, float], called: tuple[str, str, str] = TILT, least: float = LEAST
 ) -> tuple[float, float]:
     """Return both numbers of a start unless one is not `sized`, the first from the least on."""
+    name, rate, words = called
     try:
         first, second = start
     except (TypeError, ValueError):
         raise ValueError(f"start is {start!r}; it must be {words}") from None
-    return sized(f"{names[0]} of the start", first, least), sized(
-        f"{names[1]} of the start", second
-    )
+    return sized(f"{name} of the start", first, least), sized(f"{rate} of the start", second)
 
 
 def check_tilt(theta: float, rate: float, balance: float, still: Callable[[], bool]) -> None:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.checks import start_of
+from analytic.checks import PLACE, start_of
 from analytic.kernels.rest import EQUAL
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Outcome, Reason, Response
@@ -102,7 +102,7 @@ def slid(
     The last slip is as far as it got.
     """
     began = time.perf_counter()
-    x, v = start_of(start, ("x", "x'"), "x [m] and x' [m/s]")
+    x, v = start_of(start, PLACE)
     legs: list[Leg] = []
     end = _follow(block, motion.segments(), x, v, math.inf if until is None else until, legs)
     if end is None:
