@@ -43,50 +43,42 @@ FREE = {ContactPhase.APPROACH: -1.0, ContactPhase.STRIKE: 1.0}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DartSettings:
-    """Settings of DART, by default its own; None leaves a setting to the library.
+    """Settings of DART, by default its own; None leaves a setting to the library."""
 
-    geometry: "box", or "corners": small spheres where the corners at the base are.
-    planar: a planar joint, and two corners in the middle plane, instead of a free joint and four
-        corners at the edges.
-    aside: let the base slide out of the plane. Else nothing moves a block in the plane that way,
-        its friction there has no mass, the Dantzig solver fails on it, and the library takes what
-        its other solver makes of the last step's impulses in a few iterations, without a word.
-    friction: the block's and the base's, of which the library takes the smaller; its own is 1.
-    exact_inertia: set the moments of inertia, too: the mass alone leaves them at 1 kg m2.
-    collision: a detector, by default FCL. By "DART" contacts are known again by where bodies are in
-        memory: where Dantzig's solver fails, answers depend on that.
-    solver: of contact forces, by default Dantzig's, which bounds friction by normal forces that it
-        solves for without it: while a block turns about a corner up to a third too low.
-    split_impulse: correct penetration without giving it a velocity.
-    sleeping: whether a block that has hardly moved for half a second is no longer simulated.
-    unit: units of length in a metre. A penetration is corrected by 1 % of it a step, up to 1e-3
-        units/s.
-    corner_radius: over the width.
-    margin: depth over (alpha p dt)^2 H by which the corner about which the block turns is lowered,
-        so that it stays in contact.
-    reflection: give that corner's velocity back to it, by the velocity of the base; not in the
-        steps of an impact and the first one after it.
-    floor: how a base that moves is moved: by the "velocity" of its joint, or by a "servo" that
-        gives it one, both of which lead it by the library; by "both" its place and its velocity; by
-        "position" alone.
-    restitution, base_restitution: the block's and the base's, which the library multiplies.
-    """
-
+    # of corners, small spheres where those at the base are
     geometry: str = setting("box", names=("box", "corners"))
+    # a planar joint, and two corners in the middle plane, instead of a free joint and four
+    # corners at the edges
     planar: bool = False
+    # let the base slide out of the plane. Else nothing moves a block in the plane that way, its
+    # friction there has no mass, the Dantzig solver fails on it, and the library takes what its
+    # other solver makes of the last step's impulses in a few iterations, without a word
     aside: bool = False
+    # the block's and the base's, of which the library takes the smaller
     friction: float = setting(1.0, least=0.0)
-    exact_inertia: bool = True
+    exact_inertia: bool = True  # else the mass alone leaves the moments of inertia at 1 kg m2
+    # its own is FCL. By "DART" contacts are known again by where bodies are in memory: where
+    # Dantzig's solver fails, answers depend on that
     collision: str | None = setting(names=tuple(DETECTORS))
+    # of contact forces; its own, Dantzig's, bounds friction by normal forces that it solves for
+    # without it: while a block turns about a corner up to a third too low
     solver: str | None = setting(names=tuple(SOLVERS))
-    split_impulse: bool | None = None
+    split_impulse: bool | None = None  # correct penetration without giving it a velocity
+    # a block that has hardly moved for half a second is no longer simulated
     sleeping: bool | None = None
+    # units of length in a metre. A penetration is corrected by 1 % of it a step, up to 1e-3 units/s
     unit: float = setting(1.0, above=0.0)
-    corner_radius: float = setting(1e-6, above=0.0)
+    corner_radius: float = setting(1e-6, above=0.0)  # over the width
+    # depth over (alpha p dt)^2 H by which the corner about which the block turns is lowered, so
+    # that it stays in contact
     margin: float | None = setting(above=0.0)
+    # give that corner's velocity back to it, by the velocity of the base; not in the steps of an
+    # impact and the first one after it
     reflection: bool = False
+    # how a base that moves is moved: by the velocity of its joint, or by a servo that gives it one,
+    # both of which lead it by the library; by both its place and its velocity; by position alone
     floor: str = setting("velocity", names=("velocity", "servo", "both", "position"))
-    restitution: float | None = setting(least=0.0, most=1.0)
+    restitution: float | None = setting(least=0.0, most=1.0)  # the library multiplies both
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
     def __post_init__(self) -> None:

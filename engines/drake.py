@@ -70,36 +70,29 @@ does a rotation's error in units of kappa: 5e-5 at 1e-8, 3e-5 at 2e-9, and no le
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrakeSettings:
-    """Settings of Drake, by default its own; None leaves a setting to the library.
+    """Settings of Drake, by default its own; None leaves a setting to the library."""
 
-    geometry: "box", which touches in one point, its deepest, or "corners": small spheres at those.
-    planar: a planar joint, and two corners in the middle plane instead of four at the edges.
-    solver: one of `SOLVERS`, by default "lagged".
-    stiffness: of a contact over m/dt^2, dt being the step, or the time between two looks at an
-        engine that chooses its own steps; the library's own is 1e6 N/m, whatever the mass.
-    relaxation: time in which "sap" lets a contact relax, over the step.
-    dissipation: of the other solvers, over 1/(p R).
-    stiction: speed over p R at which a contact that sticks may slip.
-    near_rigid: of "sap", below which part of what a contact's mass alone would give its stiffness
-        is held.
-    corner_radius: over the width.
-    accuracy: of "cenic", the error of a step over alpha, by which it chooses its own; without it,
-        it takes those that it is told.
-    floor: how a base that moves is moved: by the "drive" of its joint, or by "position" alone.
-    """
-
+    # a box touches in one point, its deepest; corners are small spheres at those
     geometry: str = setting("box", names=("box", "corners"))
+    # a planar joint, and two corners in the middle plane instead of four at the edges
     planar: bool = False
     friction: float = setting(1.0, least=0.0)
-    solver: str | None = setting(names=SOLVERS)
+    solver: str | None = setting(names=SOLVERS)  # its own is "lagged"
+    # of a contact over m/dt^2, dt being the step, or the time between two looks at an engine that
+    # chooses its own steps; the library's own is 1e6 N/m, whatever the mass
     stiffness: float | None = setting(above=0.0)
+    # time in which "sap" lets a contact relax, over the step
     relaxation: float | None = setting(least=0.0)
-    dissipation: float | None = setting(least=0.0)
+    dissipation: float | None = setting(least=0.0)  # of the other solvers, over 1/(p R)
+    # speed over p R at which a contact that sticks may slip
     stiction: float | None = setting(above=0.0)
+    # of "sap", below which part of what a contact's mass alone would give its stiffness is held
     near_rigid: float | None = setting(least=0.0)
-    corner_radius: float = setting(1e-6, above=0.0)
+    corner_radius: float = setting(1e-6, above=0.0)  # over the width
+    # of "cenic", the error of a step over alpha, by which it chooses its own; without it, it takes
+    # those that it is told
     accuracy: float | None = setting(above=0.0, most=1.0)
-    floor: str = setting("drive", names=("drive", "position"))
+    floor: str = setting("drive", names=("drive", "position"))  # by its joint's drive, or by place
 
     def __post_init__(self) -> None:
         check(self)

@@ -40,33 +40,26 @@ SOLVERS = (XPBD, "padmm", "dvi")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NewtonSettings:
-    """Settings of Newton, by default those of its own example of a belt; None leaves its own.
+    """Settings of Newton, by default those of its own example of a belt; None leaves its own."""
 
-    geometry: "box", or "corners": four small spheres where the corners at the base are.
-    solver: "xpbd", or Kamino with one of its two solvers of dynamics, "padmm" or "dvi".
-    iterations: of "xpbd", whose own are 2, and "padmm"; "dvi" has none.
-    relaxation: part of a contact's correction that "xpbd" makes in an iteration; its own is 0.8.
-    weighting: whether "xpbd" divides a correction by the number of contacts, by which momentum is
-        lost.
-    baumgarte: part of a penetration that Kamino corrects in a step, by a velocity; its own is 0.01.
-    depth: penetration over the width that Kamino leaves as it is; its own is 1e-6 m.
-    tolerance: of "padmm"; its own is 1e-6.
-    restitution: of block and base; "xpbd" heeds it where it is told to, as here.
-    corner_radius: over the width.
-    floor: how a base that moves is moved: by its "velocity", or by "position" alone.
-    """
-
+    # of corners, four small spheres where those at the base are
     geometry: str = setting("box", names=("box", "corners"))
     friction: float = setting(1.0, least=0.0)
-    solver: str = setting(XPBD, names=SOLVERS)
+    solver: str = setting(XPBD, names=SOLVERS)  # Kamino has the other two, solvers of dynamics
+    # of "xpbd", whose own are 2, and "padmm"; "dvi" has none
     iterations: int | None = setting(least=1)
+    # part of a contact's correction that "xpbd" makes in an iteration; its own is 0.8
     relaxation: float | None = setting(above=0.0, most=2.0)
+    # "xpbd" divides a correction by the number of contacts: momentum is lost
     weighting: bool | None = None
+    # part of a penetration that Kamino corrects in a step, by a velocity; its own is 0.01
     baumgarte: float | None = setting(least=0.0, most=1.0)
+    # penetration over the width that Kamino leaves as it is; its own is 1e-6 m
     depth: float | None = setting(least=0.0)
-    tolerance: float | None = setting(above=0.0)
+    tolerance: float | None = setting(above=0.0)  # of "padmm"; its own is 1e-6
+    # of block and base; "xpbd" heeds it where it is told to, as here
     restitution: float | None = setting(least=0.0, most=1.0)
-    corner_radius: float = setting(1e-3, above=0.0)
+    corner_radius: float = setting(1e-3, above=0.0)  # over the width
     floor: str = setting("velocity", names=("velocity", "position"))
 
     def __post_init__(self) -> None:

@@ -35,46 +35,41 @@ NOTHING = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PhysxSettings(Counted):
-    """Settings of PhysX, by default those of SAPIEN; None leaves a setting to it.
+    """Settings of PhysX, by default those of SAPIEN; None leaves a setting to it."""
 
-    geometry: "box", or "corners": small balls where the corners at the base are.
-    planar: lock what leads out of the plane, and put two corners into the middle plane instead of
-        four at the edges; a box has its four either way.
-    friction, restitution: of both; SAPIEN's own are 0.3 and 0.1.
-    tgs: whether the solver is TGS, which moves bodies in every iteration, or PGS; its own is TGS.
-    iterations, velocity_iterations: with and then without the correction of depths; its own are 10
-        and 1.
-    bounce_threshold: velocity [m/s] below which no impact bounces; its own is 2.
-    depenetration: fastest correction of a depth [m/s]; its own has no limit. A rounding of the
-        depth over a short step is a velocity, too.
-    angular_damping: part of the angular velocity that is lost in a second; its own is 0.05.
-    sleeping: whether a block that has hardly moved for 0.4 s is no longer simulated; on by default.
-    contact_offset: gap [units of length] below which a contact holds, half of it on each side; its
-        own is 0.01. A block that is held before it strikes does so in two steps.
-    units, centred: see `Counted`.
-    reflection: give the sliding velocity of the corner about which the block turns back to it, by
-        the velocity of the base; not in the steps of an impact.
-    floor: how a base that moves is moved: by a "target" for the end of the step; as a "belt" whose
-        targets are where it is, set back before by what it goes in a step, since of a far place
-        less is told apart; or by "position" alone.
-    """
-
+    # of corners, small balls where those at the base are
     geometry: str = setting("box", names=("box", "corners"))
+    # lock what leads out of the plane, and put two corners into the middle plane instead of four at
+    # the edges; a box has its four either way
     planar: bool = False
-    friction: float = setting(1.0, least=0.0)
+    friction: float = setting(1.0, least=0.0)  # of both; SAPIEN's own is 0.3
+    # the solver is TGS, which moves bodies in every iteration, or PGS; its own is TGS
     tgs: bool | None = None
+    # with the correction of depths; its own are 10
     iterations: int | None = setting(least=1, most=MOST)
-    velocity_iterations: int | None = setting(least=0, most=MOST)
+    velocity_iterations: int | None = setting(least=0, most=MOST)  # and then without; 1
+    # velocity below which no impact bounces [m/s]; its own is 2
     bounce_threshold: float | None = setting(above=0.0)
+    # fastest correction of a depth [m/s]; its own has no limit. A rounding of the depth over a
+    # short step is a velocity, too
     depenetration: float | None = setting(above=0.0)
+    # part of the angular velocity lost in a second; its own is 0.05
     angular_damping: float | None = setting(least=0.0)
+    # a block that has hardly moved for 0.4 s is no longer simulated; its own is on
     sleeping: bool | None = None
+    # gap [units of length] below which a contact holds, half of it on each side; its own is 0.01. A
+    # block that is held before it strikes does so in two steps
     contact_offset: float | None = setting(above=0.0)
     units: float | None = setting(above=0.0)
     centred: bool = False
+    # give the sliding velocity of the corner about which the block turns back to it, by the
+    # velocity of the base; not in the steps of an impact
     reflection: bool = False
+    # how a base that moves is moved: by a target for the end of the step; as a belt whose targets
+    # are where it is, set back before by what it goes in a step, since of a far place less is told
+    # apart; or by position alone
     floor: str = setting("target", names=("target", "belt", "position"))
-    restitution: float = setting(0.1, least=0.0, most=1.0)
+    restitution: float = setting(0.1, least=0.0, most=1.0)  # of both; SAPIEN's own
 
     def __post_init__(self) -> None:
         check(self)

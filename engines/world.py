@@ -72,29 +72,20 @@ class Choice(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A step of a policy, and what the base does meanwhile.
+    """A step of a policy, and what the base does meanwhile."""
 
-    Attributes
-    ----------
-    dt_s, end_s : how far the step goes, and the time at its end [s]
-    kick_s : for how long forces act on the velocity [s], from the moment of the last one to this
-    pull_x, pull_z : gravity [m/s2] that gives the velocity in `dt_s` what the weight gives it in
-        `kick_s`, and along the base what the body force -m u_g'' does; 0 in the frame "world"
-    base_kick : change of the base's velocity [m/s] in `kick_s`
-    base_velocity, base_x : the base's velocity, whose mean over the step leads to its place [m]
-    phase, side : what the step is for; the corner turned about, -1 or 1, or 0 where both hold
-    """
-
-    dt_s: float
-    end_s: float
+    dt_s: float  # how far it goes [s]
+    end_s: float  # the time at its end [s]
+    # for how long forces act on the velocity [s], from the moment of the last one to this
     kick_s: float
+    # gravity [m/s2] along the base, for the body force -m u_g'', which is 0 in the frame "world"
     pull_x: float
-    pull_z: float
-    base_kick: float
-    base_velocity: float
-    base_x: float
-    phase: ContactPhase
-    side: float
+    pull_z: float  # gravity [m/s2] by which `dt_s` gives the velocity what `kick_s` of weight does
+    base_kick: float  # change of the base's velocity in `kick_s` [m/s]
+    base_velocity: float  # the base's, whose mean over the step leads to its place [m/s]
+    base_x: float  # the base's place at its end [m]
+    phase: ContactPhase  # what it is for
+    side: float  # the corner turned about, -1 or 1, or 0 where both hold
 
 
 class Pose(NamedTuple):
@@ -144,24 +135,17 @@ class Script:
     """What an engine's declaration writes of a scene: Python for the library, without this project.
 
     A script that is the same for all engines shakes the base with it, and watches the rotation.
-
-    Attributes
-    ----------
-    imports, settings : lines that import the library, and that set what a reader would copy
-    build : lines that build the scene and list its `bodies`; `HERE` is the folder of the script
-    step : lines that take a step of `DT` [s] under the gravity `pull_x` and `pull_z` [m/s2]; a base
-        that moves comes to `base_x` [m] by a mean `base_velocity` [m/s]
-    pose : lines that read `theta` [rad] and `rate` [rad/s] of the body with a `number`
-    place : how far the first body's centre is along the base [m], which is to be at `base_x` [m]
-    moment : at which moment of a step the velocity holds
-    files : name -> text of what lies beside the script
     """
 
-    imports: tuple[str, ...]
-    settings: tuple[str, ...]
+    imports: tuple[str, ...]  # lines that import the library
+    settings: tuple[str, ...]  # lines that set what a reader would copy
+    # lines that build the scene and list its `bodies`; `HERE` is the folder of the script
     build: tuple[str, ...]
+    # lines that take a step of `DT` [s] under gravity, `pull_x` and `pull_z` [m/s2]; a base that
+    # moves comes to `base_x` [m] by a mean `base_velocity` [m/s]
     step: tuple[str, ...]
-    pose: tuple[str, ...]
-    place: str
-    moment: Moment = Moment.MIDDLE
+    pose: tuple[str, ...]  # lines that read `theta` [rad] and `rate` [rad/s] of body `number`
+    place: str  # how far the first body's centre is along the base, which is to be at `base_x` [m]
+    moment: Moment = Moment.MIDDLE  # of a step, at which the velocity holds
+    # name -> text of what lies beside the script
     files: Mapping[str, str] = field(default_factory=dict)
