@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
-from engines.factors import ASLEEP, Factor, factor, level, moving_base
+from engines.factors import ASLEEP, factor, level, moving_base
 from engines.parts import NO_JAM, fall, imported, iterations_for, returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import BASE, Scene
@@ -304,10 +304,8 @@ RECOMMENDED = (
 
 FACTORS = (
     factor("geometry"),
-    Factor(
-        "iterations",
-        ("iterations", "sweeps"),
-        tuple(level(f"{count}", iterations=count) for count in (6, 100, 1000)),
+    factor(
+        ("iterations", "sweeps"), *(level(f"{count}", iterations=count) for count in (6, 100, 1000))
     ),
     factor("position_iterations", level("2", position_iterations=2)),
     factor("units", level("5 a height", units=5.0), level("200 a height", units=200.0)),

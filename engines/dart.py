@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import Citation, Engine, Help, Preset, Stepping
-from engines.factors import BOTH, DEFAULT, Factor, factor, level, moving_base
+from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import fall, imported, returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import Scene
@@ -379,10 +379,10 @@ FACTORS = (
     ),
     factor("split_impulse", level("on", BOTH, split_impulse=True)),
     factor("sleeping"),
-    Factor(
-        "geometry",
+    factor(
         ("geometry", "planar", "aside"),
-        (level("4 corners", planar=False, aside=False), level("planar box", geometry="box")),
+        level("4 corners", planar=False, aside=False),
+        level("planar box", geometry="box"),
     ),
     factor(
         "collision",

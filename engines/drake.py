@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import Citation, Engine, Preset, Stepping
-from engines.factors import BOTH, DEFAULT, Factor, factor, level, moving_base
+from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported
 from engines.run.export import Notes, Script
 from engines.run.ground import mean_velocity_of
@@ -453,28 +453,22 @@ LAGGED = "friction goes by the normal force of the last step, which no impact ha
 DEEPEST = "a box touches a half-space in one point, its deepest"
 
 FACTORS = (
-    Factor(
-        "solver",
+    factor(
         ("solver", "relaxation", "near_rigid"),
-        (
-            level("SAP, relaxation 10", solver="sap", relaxation=10.0, near_rigid=0.0),
-            level("SAP, relaxation 1", solver="sap", relaxation=1.0, near_rigid=0.0),
-            level("SAP", (DEFAULT,), solver="sap"),
-            level("similar", BOTH, solver="similar"),
-        ),
+        level("SAP, relaxation 10", solver="sap", relaxation=10.0, near_rigid=0.0),
+        level("SAP, relaxation 1", solver="sap", relaxation=1.0, near_rigid=0.0),
+        level("SAP", (DEFAULT,), solver="sap"),
+        level("similar", BOTH, solver="similar"),
     ),
     factor("stiffness", level("10", stiffness=10.0), level("0.1", stiffness=0.1)),
     factor(
         "dissipation", level("100", dissipation=1e2), level("1e4", trap=LAGGED, dissipation=1e4)
     ),
     factor("stiction", level("1e-4", stiction=1e-4)),
-    Factor(
-        "geometry",
+    factor(
         ("geometry", "planar"),
-        (
-            level("4 corners", BOTH, geometry="corners", planar=False),
-            level("planar box", trap=DEEPEST, geometry="box"),
-        ),
+        level("4 corners", BOTH, geometry="corners", planar=False),
+        level("planar box", trap=DEEPEST, geometry="box"),
         traps={"tuned": DEEPEST},
     ),
     factor("corner_radius", level("B/500", corner_radius=2e-3)),

@@ -52,9 +52,12 @@ class Factor:
     traps: Mapping[str, str] = field(default_factory=dict, kw_only=True)
 
 
-def factor(setting: str, *levels: Level, name: str = "", **options: Any) -> Factor:
-    """Return a factor that is a matter of one setting; with by_default and traps of `Factor`."""
-    return Factor(name or setting.replace("_", " "), (setting,), levels, **options)
+def factor(
+    settings: str | tuple[str, ...], *levels: Level, name: str = "", **options: Any
+) -> Factor:
+    """Return a factor of one setting or more, called as the first; options are of `Factor`."""
+    together = (settings,) if isinstance(settings, str) else settings
+    return Factor(name or together[0].replace("_", " "), together, levels, **options)
 
 
 def moving_base(*floors: str) -> Factor:
@@ -72,13 +75,12 @@ def moving_base(*floors: str) -> Factor:
         )
         for floor in floors
     ]
-    return Factor("moving base", ("floor",), tuple(levels), by_default=False)
+    return factor("floor", *levels, name="moving base", by_default=False)
 
 
-ASLEEP = Factor(
+ASLEEP = factor(
     "sleeping",
-    ("sleeping",),
-    (level("on", trap="a block asleep: gravity that turns wakes nothing", sleeping=True),),
+    level("on", trap="a block asleep: gravity that turns wakes nothing", sleeping=True),
     by_default=False,
 )
 """A block that was put to sleep, which tuned presets forbid (setting `sleeping`)."""

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engines.declaration import Citation, Engine, Precision, Preset
-from engines.factors import BOTH, DEFAULT, Factor, factor, level, moving_base
+from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported, silence
 from engines.run.export import Notes, Script
 from engines.scene import Scene
@@ -370,13 +370,10 @@ TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)
 OVERDONE = "both corners correct all of a penetration that they share"
 
 FACTORS = (
-    Factor(
-        "solver",
+    factor(
         ("solver", "iterations"),
-        (
-            level("XPBD, 50 iterations", BOTH, solver=XPBD, iterations=50),
-            level("Kamino by PADMM", BOTH, solver="padmm", iterations=200),
-        ),
+        level("XPBD, 50 iterations", BOTH, solver=XPBD, iterations=50),
+        level("Kamino by PADMM", BOTH, solver="padmm", iterations=200),
     ),
     factor("relaxation", level("1", (DEFAULT,), relaxation=1.0), by_default=False),
     factor("weighting", level("no", (DEFAULT,), OVERDONE, weighting=False), by_default=False),

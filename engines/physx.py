@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
-from engines.factors import BOTH, DEFAULT, Factor, factor, level, moving_base
+from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported, returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import Scene
@@ -354,20 +354,17 @@ SMOOTH = "SAPIEN's own friction: the block slides before it rocks"
 
 FACTORS = (
     factor("tgs", level("TGS", trap=STUCK, tgs=True), level("PGS", (DEFAULT,), tgs=False)),
-    Factor("iterations", tuple(EVERY), (level("255, 255", **EVERY),)),
+    factor(tuple(EVERY), level("255, 255", **EVERY), name="iterations"),
     factor("depenetration"),
     factor("contact_offset"),
     factor("angular_damping"),
     factor("bounce_threshold", level("0.01 m/s", BOTH, bounce_threshold=0.01)),
     factor("restitution"),
-    Factor(
-        "geometry",
+    factor(
         ("geometry", "planar"),
-        (
-            level("4 corners, free", planar=False),
-            level("planar box", geometry="box"),
-            level("4 corners", (DEFAULT,), geometry="corners"),
-        ),
+        level("4 corners, free", planar=False),
+        level("planar box", geometry="box"),
+        level("4 corners", (DEFAULT,), geometry="corners"),
     ),
     factor("units", level("metres", units=None)),
     factor("centred", name="origin"),

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import Citation, Engine, Help, Preset, Stepping
-from engines.factors import Factor, factor, level, moving_base
+from engines.factors import factor, level, moving_base
 from engines.parts import NO_JAM, fall, imported, iterations_for, returned
 from engines.run.export import Notes, Script, constant, scaled
 from engines.scene import BASE, Body, Scene
@@ -294,7 +294,7 @@ RECOMMENDED = (
 FACTORS = (
     factor("geometry"),
     factor("positions", level("moved by the adapter", positions=True), by_default=False),
-    Factor("iterations", ("iterations", "sweeps"), (level("100", iterations=100),)),
+    factor(("iterations", "sweeps"), level("100", iterations=100)),
     factor("margin", level("1", margin=1.0), level("0.1", margin=0.1)),
     factor("bias", level("the library's", bias=(1.0 - 0.1) ** 60)),
     factor("unit", level("the README's 100 in a metre", ("default",), unit=100.0)),

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
-from engines.factors import ASLEEP, BOTH, DEFAULT, Factor, factor, level, moving_base
+from engines.factors import ASLEEP, BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported, iterations_for, returned
 from engines.run.export import Notes, Script, scaled
 from engines.scene import Scene
@@ -364,25 +364,21 @@ RECOMMENDED = (
 """What it recommends for accurate contact."""
 
 FACTORS = (
-    Factor(
-        "contact spring",
+    factor(
         ("frequency", "damping_ratio", "correction"),
-        (
-            level("1e3 Hz", frequency=1e3, damping_ratio=1.0, correction=None),
-            level("1e6 Hz", frequency=1e6, damping_ratio=1.0, correction=None),
-            level("1 step", correction=1.0),
-            level("1000 steps", correction=1000.0),
-        ),
+        level("1e3 Hz", frequency=1e3, damping_ratio=1.0, correction=None),
+        level("1e6 Hz", frequency=1e6, damping_ratio=1.0, correction=None),
+        level("1 step", correction=1.0),
+        level("1000 steps", correction=1000.0),
+        name="contact spring",
     ),
     factor("recycling", traps={"tuned": RECYCLED}, name="contact recycling"),
     ASLEEP,
     factor("locked_aside", level("y locked", trap=FRICTIONLESS, locked_aside=True), name="locks"),
     factor("stabilization", traps={"default": "without it a pivot slides away"}),
     factor("substeps"),
-    Factor(
-        "iterations",
-        ("iterations", "sweeps"),
-        (level("10", BOTH, iterations=10), level("1000", iterations=1000)),
+    factor(
+        ("iterations", "sweeps"), level("10", BOTH, iterations=10), level("1000", iterations=1000)
     ),
     factor("warm_starting"),
     factor("coulomb", level("Coulomb", BOTH, coulomb=True), name="friction model"),
@@ -392,22 +388,18 @@ FACTORS = (
         name="friction while depths are corrected",
     ),
     factor("friction", level("0.5, the library's own", (DEFAULT,), SMOOTH, friction=0.5)),
-    Factor(
-        "geometry",
+    factor(
         ("geometry", "planar"),
-        (level("4 corners, free", planar=False), level("planar box", geometry="box")),
+        level("4 corners, free", planar=False),
+        level("planar box", geometry="box"),
     ),
     factor("units", level("1.5 a height", units=1.5)),
     factor("centred", name="origin"),
-    Factor(
-        "depth of the base",
+    factor(
         ("base_depth", "corner_radius"),
-        (
-            level("1 H", base_depth=1.0),
-            level(
-                "1 H, corners of 1e-7 H", trap=WITHOUT_NORMAL, base_depth=1.0, corner_radius=1e-7
-            ),
-        ),
+        level("1 H", base_depth=1.0),
+        level("1 H, corners of 1e-7 H", trap=WITHOUT_NORMAL, base_depth=1.0, corner_radius=1e-7),
+        name="depth of the base",
         by_default=False,
     ),
     factor(

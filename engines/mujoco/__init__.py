@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from engines.declaration import Citation, Engine, Help, Preset, Stepping
-from engines.factors import BOTH, DEFAULT, Factor, factor, level, moving_base
+from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.mujoco.build import MujocoSettings, MujocoWorld, script
 
 TUNED = MujocoSettings(
@@ -108,21 +108,19 @@ FACTORS = (
     ),
     factor("tolerance", level("1e-4", tolerance=1e-4), name="solver tolerance"),
     factor("iterations", level("2", iterations=2), name="solver iterations", by_default=False),
-    Factor(
-        "reference",
+    factor(
         (*ORIGINAL, "impedance"),
-        (
-            level("0.02 s 1, best impedance", **ORIGINAL),
-            level("2 dt 1", solref=(2.0, 1.0), **ORIGINAL),
-            level("10 dt 1", solref=(10.0, 1.0), **ORIGINAL),
-            level("2 dt 1", (DEFAULT,), solref=(2.0, 1.0)),
-            level("2 dt 0", trap=ZERO, solref=(2.0, 0.0), **ORIGINAL),
-            level("b dt 0.3", damping=0.3, sliding_damping=0.3),
-            level("b dt 1.9", damping=1.9, sliding_damping=1.9),
-            level("k dt² 1e-4", stiffness=1e-4),
-            level("k dt² 0.3", stiffness=0.3),
-            level("as for a slide", **SLIDING),
-        ),
+        level("0.02 s 1, best impedance", **ORIGINAL),
+        level("2 dt 1", solref=(2.0, 1.0), **ORIGINAL),
+        level("10 dt 1", solref=(10.0, 1.0), **ORIGINAL),
+        level("2 dt 1", (DEFAULT,), solref=(2.0, 1.0)),
+        level("2 dt 0", trap=ZERO, solref=(2.0, 0.0), **ORIGINAL),
+        level("b dt 0.3", damping=0.3, sliding_damping=0.3),
+        level("b dt 1.9", damping=1.9, sliding_damping=1.9),
+        level("k dt² 1e-4", stiffness=1e-4),
+        level("k dt² 0.3", stiffness=0.3),
+        level("as for a slide", **SLIDING),
+        name="reference",
     ),
     factor(
         "impedance",
@@ -140,15 +138,12 @@ FACTORS = (
         level("implicitfast", integrator="implicitfast"),
     ),
     factor("margin", level("1e-3 B", margin=1e-3), level("1e-2 B", margin=1e-2)),
-    Factor(
-        "geometry",
+    factor(
         ("geometry", "planar"),
-        (
-            level("planar box", geometry="box"),
-            level("hull", BOTH, geometry="hull"),
-            level("4 corners, free", planar=False),
-            level("planar box", (DEFAULT,), planar=True),
-        ),
+        level("planar box", geometry="box"),
+        level("hull", BOTH, geometry="hull"),
+        level("4 corners, free", planar=False),
+        level("planar box", (DEFAULT,), planar=True),
     ),
     moving_base("surfacevel", "weld", "position"),
 )

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from engines.declaration import Citation, Engine, Help, Preset, Stepping
-from engines.factors import BEST, BOTH, DEFAULT, Factor, factor, level, moving_base
+from engines.factors import BEST, BOTH, DEFAULT, factor, level, moving_base
 from engines.pybullet.build import LIBRARY_STEP_S, BulletSettings, BulletWorld, script
 
 TUNED = BulletSettings(
@@ -84,11 +84,7 @@ FACTORS = (
         level("1e-12", residual=1e-12),
         name="residual threshold",
     ),
-    Factor(
-        "iterations",
-        ("iterations", "sweeps"),
-        (level("5", iterations=5), level("1000", iterations=1000)),
-    ),
+    factor(("iterations", "sweeps"), level("5", iterations=5), level("1000", iterations=1000)),
     factor("contact_erp", level("0", contact_erp=0.0), name="contact ERP"),
     factor("friction_erp", level("1", friction_erp=1.0), name="friction ERP"),
     factor(
@@ -104,14 +100,12 @@ FACTORS = (
         level("on, friction ERP 1", trap=ANCHORED, friction_anchor=True, friction_erp=1.0),
     ),
     factor("breaking_threshold", level("1e-5 R", breaking_threshold=1e-5), name="kept gap"),
-    Factor(
-        "yielding contact",
+    factor(
         ("contact_stiffness", "contact_damping"),
-        (
-            level("k 1e4, c 1e2", contact_stiffness=1e4, contact_damping=1e2),
-            level("k 1e4, c 1e3", contact_stiffness=1e4, contact_damping=1e3),
-            level("k 1e6, c 1e5", BOTH, contact_stiffness=1e6, contact_damping=1e5),
-        ),
+        level("k 1e4, c 1e2", contact_stiffness=1e4, contact_damping=1e2),
+        level("k 1e4, c 1e3", contact_stiffness=1e4, contact_damping=1e3),
+        level("k 1e6, c 1e5", BOTH, contact_stiffness=1e6, contact_damping=1e5),
+        name="yielding contact",
     ),
     factor("damping", level("0.04, a multibody's default", trap=DRAG, damping=0.04)),
     factor(
@@ -120,21 +114,18 @@ FACTORS = (
         name="coordinates",
     ),
     factor("exact_inertia", name="inertia", traps={BEST: SPHERES}),
-    Factor(
-        "geometry",
+    factor(
         ("geometry", "planar", "exact_inertia"),
-        (
-            level("hull on plane", trap=SLIDES, geometry="hull"),
-            level("hull on plane, default ERP", geometry="hull", contact_erp=None),
-            level("hull on plane", (DEFAULT,), geometry="hull"),
-            level("2 corners on box", base_geometry="box"),
-            level("box on box", BOTH, geometry="box", base_geometry="box"),
-            level("hull on box", trap=SLIDES, **HULL_ON_BOX),
-            level("hull on box", (DEFAULT,), **HULL_ON_BOX),
-            level("4 corners on plane", BOTH, geometry="corners", planar=False, exact_inertia=True),
-            level("corners of B/500", corner_radius=2e-3),
-            level("box, separating axes", geometry="box", separating_axis=True),
-        ),
+        level("hull on plane", trap=SLIDES, geometry="hull"),
+        level("hull on plane, default ERP", geometry="hull", contact_erp=None),
+        level("hull on plane", (DEFAULT,), geometry="hull"),
+        level("2 corners on box", base_geometry="box"),
+        level("box on box", BOTH, geometry="box", base_geometry="box"),
+        level("hull on box", trap=SLIDES, **HULL_ON_BOX),
+        level("hull on box", (DEFAULT,), **HULL_ON_BOX),
+        level("4 corners on plane", BOTH, geometry="corners", planar=False, exact_inertia=True),
+        level("corners of B/500", corner_radius=2e-3),
+        level("box, separating axes", geometry="box", separating_axis=True),
     ),
     factor("split_impulse", level("on", split_impulse=True), level("off", split_impulse=False)),
     factor(
