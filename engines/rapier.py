@@ -31,63 +31,53 @@ leans by what the contact yields: up to 4e-5."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RapierSettings(Counted):
-    """Settings of Rapier, by default its own; None leaves a setting to the library.
+    """Settings of Rapier, by default its own; None leaves a setting to the library."""
 
-    geometry: "box", or "corners": small balls where the corners at the base are.
-    planar: lock the rotations that lead out of the plane, and put two corners into the middle plane
-        instead of four at the edges; a box has its four either way.
-    locked_aside: lock the translation out of the plane, too. The contact then has no friction.
-    friction, restitution: the block's; the library takes the mean of a pair's.
-    substeps, iterations, stabilization: substeps in a step, iterations in each, and those that take
-        out of the velocities what the correction of positions has put in.
-    sweeps: iterations over 1/sin^2(alpha), where `iterations` are None.
-    frequency, damping_ratio: of the contact [Hz]; the library's are 30 and 10, and 60 Hz on what
-        does not move.
-    correction: ordinary steps in which a contact corrects a position, in place of the two: in a
-        short step it takes out no more than its share, which else would be a velocity made of
-        rounding.
-    recycling: whether contacts are taken from the last step where bodies have hardly moved.
-    warm_starting: part of the last step's impulses from which the solver starts; they are not
-        scaled by the ratio of two steps.
-    coulomb: give each contact a friction of its own instead of one to all four.
-    friction_in_bias_pass: whether friction is solved, too, where a step corrects depths.
-    sleeping: whether a block that has hardly moved for half a second is no longer simulated.
-    units, centred: see `Counted`.
-    base_depth: half the depth of the base over the height of the block. Contacts are looked for
-        from the middle of the base: the deeper that is, the more coarsely.
-    corner_radius: over the height. On a deep base a ball whose centre is rounded to where the
-        surface is has no contact for a step.
-    reflection: give the sliding velocity of the corner about which the block turns back to it, by
-        the velocity of the base; not in the steps of an impact.
-    floor: how a base that moves is moved: by a "target" for the end of the step or its "velocity",
-        which the library leads it by; by "both" its place and its velocity; by "position" alone.
-    base_restitution: the block's by default.
-    """
-
+    # of corners, small balls where those at the base are
     geometry: str = setting("box", names=("box", "corners"))
+    # lock the rotations that lead out of the plane, and put two corners into the middle plane
+    # instead of four at the edges; a box has its four either way
     planar: bool = False
+    # lock the translation out of the plane: the contact then has no friction
     locked_aside: bool = False
-    friction: float = setting(1.0, least=0.0)
-    substeps: int | None = setting(least=1)
-    iterations: int | None = setting(least=1)
+    friction: float = setting(1.0, least=0.0)  # the block's; of a pair the mean counts
+    substeps: int | None = setting(least=1)  # in a step
+    iterations: int | None = setting(least=1)  # in each
+    # those that take out of the velocities what the correction of positions has put in
     stabilization: int | None = setting(least=0)
+    # iterations over 1/sin^2(alpha), where they are not given
     sweeps: float | None = setting(above=0.0)
+    # of the contact [Hz]; its own is 30, and 60 on what does not move
     frequency: float | None = setting(above=0.0, beside=("damping_ratio",))
-    damping_ratio: float | None = setting(above=0.0)
+    damping_ratio: float | None = setting(above=0.0)  # its own is 10
+    # ordinary steps in which a contact corrects a position, in place of the two: in a short step it
+    # takes out no more than its share, which else would be a velocity made of rounding
     correction: float | None = setting(above=0.0)
-    recycling: bool | None = None
+    recycling: bool | None = None  # take contacts from the last step where bodies have hardly moved
+    # part of the last step's impulses from which the solver starts; they are not scaled by the
+    # ratio of two steps
     warm_starting: float | None = setting(least=0.0, most=1.0)
+    # give each contact a friction of its own instead of one to all four
     coulomb: bool | None = None
-    friction_in_bias_pass: bool | None = None
+    friction_in_bias_pass: bool | None = None  # solve friction, too, where a step corrects depths
+    # a block that has hardly moved for half a second is no longer simulated
     sleeping: bool | None = None
     units: float | None = setting(above=0.0)
     centred: bool = False
+    # half the depth of the base over the height of the block. Contacts are looked for from the
+    # middle of the base: the deeper that is, the more coarsely
     base_depth: float = setting(1.0, above=0.0)
+    # over the height. On a deep base a ball whose centre is rounded to where the surface is has no
+    # contact for a step
     corner_radius: float = setting(1e-5, above=0.0)
+    # give the sliding velocity of the corner about which the block turns back to it, by the
+    # velocity of the base; not in the steps of an impact
     reflection: bool = False
+    # how a base that moves is moved: by a target for the end of the step or its velocity, which the
+    # library leads it by; by both its place and its velocity; by position alone
     floor: str = setting("target", names=("target", "velocity", "both", "position"))
     restitution: float = setting(0.0, least=0.0, most=1.0)
-    base_restitution: float | None = setting(least=0.0, most=1.0)
+    base_restitution: float | None = setting(least=0.0, most=1.0)  # the block's by default
 
     def __post_init__(self) -> None:
         check(self)

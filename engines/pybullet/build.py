@@ -60,58 +60,47 @@ idle: list[int] = []
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BulletSettings:
-    """Settings of PyBullet, by default its own; None leaves a setting to the library.
+    """Settings of PyBullet, by default its own; None leaves a setting to the library."""
 
-    geometry, base_geometry: "box", "corners" (small spheres where the corners at the base are) or
-        "hull" (a convex mesh of the block's eight corners); of the base "plane" or "box".
-    planar: put two corner spheres into the middle plane instead of four at the edges.
-    multibody: build the block in reduced coordinates, as the library does by default.
-    friction: of block and base; by default not the library's own, 0.5, with which a block of
-        H/B = 2 slides before it rocks.
-    corner_radius, breaking_threshold: radius of the corner spheres over the width; gap, over the
-        half diagonal, up to which a contact is kept, in the whole process.
-    gap_by_step: keep contacts up to a gap of `KEPT_GAP` instead, out of which no sphere rolls.
-    exact_inertia: set the block's moments of inertia instead of those of its collision shape.
-    iterations, sweeps, residual: of the solver: how many at most, or their number over
-        1/sin^2(alpha), and the squared velocity [m2/s2] at which they end.
-    contact_erp, friction_erp, constraint_erp: part of a position error that a step corrects: of
-        contacts, of their friction anchor, and of the constraint that holds a base.
-    by_phase: correct no positions in the short steps around an impact, and no slip at rest.
-    floor: how a base that moves is moved: by a "constraint", which holds a box with a mass, by its
-        "velocity", or by "position" alone.
-    restitution, base_restitution: of the block and of the base, which the library multiplies.
-    contact_stiffness, contact_damping: of a yielding contact, over m p^2 and m p.
-    others: as the library has them.
-    """
-
+    # of corners, small spheres where those at the base are; of a hull, a convex mesh of all eight
     geometry: str = setting("box", names=("box", "corners", "hull"))
+    # put two corner spheres into the middle plane instead of four at the edges
     planar: bool = False
-    multibody: bool = True
+    multibody: bool = True  # build the block in reduced coordinates
+    # of block and base; its own is 0.5, with which a block of H/B = 2 slides before it rocks
     friction: float = setting(1.0, least=0.0, most=LARGEST_FRICTION)
-    corner_radius: float = setting(1e-6, above=0.0)
+    corner_radius: float = setting(1e-6, above=0.0)  # of the spheres, over the width
+    # set the block's moments of inertia instead of those of its collision shape
     exact_inertia: bool = False
     damping: float | None = None
-    iterations: int | None = setting(None, least=1)
-    sweeps: float | None = setting(None, above=0.0)
-    residual: float | None = None
-    contact_erp: float | None = None
-    friction_erp: float | None = None
+    iterations: int | None = setting(None, least=1)  # of the solver, at most
+    sweeps: float | None = setting(None, above=0.0)  # iterations over 1/sin^2(alpha)
+    residual: float | None = None  # squared velocity at which they end [m2/s2]
+    contact_erp: float | None = None  # part of a position error that a step corrects: of contacts
+    friction_erp: float | None = None  # of their friction anchor
+    # of the constraint that holds a base
     constraint_erp: float | None = setting(least=0.0, most=1.0)
     friction_anchor: bool = False
     contact_slop: float | None = None
+    # gap, over the half diagonal, up to which a contact is kept, in the whole process
     breaking_threshold: float = LIBRARY_BREAKING_THRESHOLD
+    # keep contacts up to a gap of `KEPT_GAP` instead, out of which no sphere rolls
     gap_by_step: bool = False
+    # correct no positions in the short steps around an impact, and no slip at rest
     by_phase: bool = False
     base_geometry: str = setting("plane", names=("plane", "box"))
+    # how a base that moves is moved: by a constraint, which holds a box with a mass, by its
+    # velocity, or by position alone
     floor: str = setting("constraint", names=("constraint", "velocity", "position"))
     solver: str | None = setting(names=tuple(SOLVERS))
     warm_starting: float | None = setting(least=0.0, most=1.0)
     split_impulse: bool | None = None
     cone_friction: bool | None = None
     separating_axis: bool | None = None
-    restitution: float | None = setting(least=0.0, most=1.0)
+    restitution: float | None = setting(least=0.0, most=1.0)  # the library multiplies both
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
     restitution_threshold: float | None = setting(least=0.0)
+    # of a yielding contact, over m p^2; its damping is over m p
     contact_stiffness: float | None = setting(above=0.0, beside=("contact_damping",))
     contact_damping: float | None = setting(above=0.0)
 
