@@ -211,8 +211,7 @@ def sample_cubic(path: Cubic, begin: State, notes: Notes, n: int) -> int:
     """Sample a step from a state; return the number of samples so far."""
     while n < len(notes.times) and notes.times[n] <= begin.tau + path.h:
         theta, speed = cubic_at(path, (notes.times[n] - begin.tau) / path.h)
-        notes.samples[0, n] = begin.side * theta
-        notes.samples[1, n] = begin.side * speed
+        notes.samples[0, n], notes.samples[1, n] = begin.side * theta, begin.side * speed
         n += 1
     return n
 

@@ -14,11 +14,11 @@ import numpy as np
 from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
 from engines.factors import ASLEEP, factor, level, moving_base
 from engines.parts import NO_JAM, fall, imported, iterations_for, returned
-from engines.run.export import Notes, Script, scaled
+from engines.run.export import Notes, scaled
 from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
 from engines.shapes import Counted, floor_reach
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
 
 DEEPER = 3.0
 """By how many of a pivot's reaches a free corner above is out of reach before an impact."""

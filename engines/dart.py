@@ -16,11 +16,11 @@ import numpy as np
 from engines.declaration import Citation, Engine, Help, Preset, Stepping
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import fall, imported, returned
-from engines.run.export import Notes, Script, scaled
+from engines.run.export import Notes, scaled
 from engines.scene import Scene
 from engines.settings import check, disagreement, one_of, setting
 from engines.shapes import Point, counted, floor_half_size, half_size, touching_spheres
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
 
 DETECTORS = {
     "DART": "DARTCollisionDetector",

@@ -18,12 +18,12 @@ import numpy as np
 from engines.declaration import Citation, Engine, Preset, Stepping
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported
-from engines.run.export import Notes, Script
+from engines.run.export import Notes
 from engines.run.ground import mean_velocity_of
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, setting
 from engines.shapes import floor_half_size, half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Step
+from engines.world import FloatArray, Moment, Pose, Script, Step
 
 MODULES = (
     "geometry",

@@ -17,11 +17,11 @@ import numpy as np
 from engines.declaration import Citation, Engine, Precision, Preset
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported, silence
-from engines.run.export import Notes, Script
+from engines.run.export import Notes
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, setting
 from engines.shapes import half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Step
+from engines.world import FloatArray, Moment, Pose, Script, Step
 
 MOST_CONTACTS = 4, 16
 """Room for so many contacts of a block, having four corners at its base, and of each pair of faces

@@ -15,11 +15,11 @@ import numpy as np
 from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported, returned
-from engines.run.export import Notes, Script, scaled
+from engines.run.export import Notes, scaled
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, setting
 from engines.shapes import Counted, counted, floor_half_size, half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Step
+from engines.world import FloatArray, Moment, Pose, Script, Step
 
 MOST = 255
 """Iterations at most: the library counts them in eight bits."""

@@ -15,11 +15,11 @@ import numpy as np
 from engines.declaration import Citation, Engine, Help, Preset, Stepping
 from engines.factors import factor, level, moving_base
 from engines.parts import NO_JAM, fall, imported, iterations_for, returned
-from engines.run.export import Notes, Script, constant, scaled
+from engines.run.export import Notes, constant, scaled
 from engines.scene import BASE, Body, Scene
 from engines.settings import check, disagreement, setting
 from engines.shapes import floor_reach
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Step
+from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
 
 UNIT_S = 1e-3
 """Step [s] that the library is told where the positions are not its own to move."""

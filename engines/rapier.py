@@ -15,11 +15,11 @@ import numpy as np
 from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
 from engines.factors import ASLEEP, BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported, iterations_for, returned
-from engines.run.export import Notes, Script, scaled
+from engines.run.export import Notes, scaled
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, one_of, setting
 from engines.shapes import Counted, counted, floor_half_size, half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Step
+from engines.world import FloatArray, Moment, Pose, Script, Step
 
 OVERDAMPED = 1e5
 """Damping ratio of a contact that corrects positions and is firm all the same."""

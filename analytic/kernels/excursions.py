@@ -200,8 +200,7 @@ def sample_step(
             theta, rate = linear_state(law, segment, begin, at)
         else:
             theta, rate = value(d, order, at / h), slope(d, order, at / h) / h
-        notes.samples[0, n] = begin.side * theta
-        notes.samples[1, n] = begin.side * rate
+        notes.samples[0, n], notes.samples[1, n] = begin.side * theta, begin.side * rate
         n += 1
     return n
 

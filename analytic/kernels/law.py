@@ -93,17 +93,13 @@ class Notes(NamedTuple):
 def note(log: FloatArray, n: int, kind: float, tau: float, before: float, after: float) -> int:
     """Write an event into the log if it has room; return the number of events so far."""
     if n < log.shape[0]:
-        log[n, 0] = kind
-        log[n, 1] = tau
-        log[n, 2] = before
-        log[n, 3] = after
+        log[n, 0], log[n, 1], log[n, 2], log[n, 3] = kind, tau, before, after
     return n + 1
 
 
 def sample_still(notes: Notes, until: float, n: int, theta: float, rate: float) -> int:
     """Sample a state that lasts up to a time; return the number of samples so far."""
     while n < len(notes.times) and notes.times[n] <= until:
-        notes.samples[0, n] = theta
-        notes.samples[1, n] = rate
+        notes.samples[0, n], notes.samples[1, n] = theta, rate
         n += 1
     return n

@@ -128,32 +128,25 @@ def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
     return 2.0 * v * (1.0 / here + law.eta / there) / (1.0 - law.eta * law.eta)
 
 
-def side_after(law: Law, side: float, v: float, now: float, later: float, wait: float) -> float:
-    """Return the side of a block that leaves its base at v after an impact; 0 where it rests.
+def after_impact(
+    law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float
+) -> tuple[float, float]:
+    """Return the side of a block that leaves its base at v after an impact, and `time_to_rest`.
 
-    The ground accelerates by `now` at the impact, and by `later` after `wait`, the `time_to_rest`.
-    A train of impacts is summed to a rest if it is shorter than ZENO, and the restoring
-    accelerations change by less than a part ZENO in it.
+    The side is 0 where it rests: a train of impacts is summed if it is shorter than ZENO, and the
+    restoring accelerations change by less than a part ZENO in it; the ground moves on as on
+    segment j.
     """
+    now = ground(segments, j, tau)
+    wait = time_to_rest(law, side, v, now)
+    later = ground(segments, j, tau + wait) if wait < math.inf else now
     here = acceleration(law, side, now, 0.0)
     there = acceleration(law, -side, now, 0.0)
     change = abs(acceleration(law, side, later, 0.0) - here)
     if wait < ZENO and change <= ZENO * min(abs(here), abs(there)):
-        return 0.0
-    if v == 0.0:
-        # no velocity is left, but the ground lifts the block again at once
-        return -math.copysign(1.0, now)
-    return side
-
-
-def after_impact(
-    law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float
-) -> tuple[float, float]:
-    """Return `side_after` an impact, and `time_to_rest`; the ground moves on as on segment j."""
-    a = ground(segments, j, tau)
-    wait = time_to_rest(law, side, v, a)
-    later = ground(segments, j, tau + wait) if wait < math.inf else a
-    return side_after(law, side, v, a, later, wait), wait
+        return 0.0, wait
+    # where no velocity is left the ground lifts the block again at once
+    return side if v != 0.0 else -math.copysign(1.0, now), wait
 
 
 ZENO = 1e-4

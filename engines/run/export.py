@@ -27,8 +27,6 @@ from typing import Any
 
 import numpy as np
 
-from engines.world import Script
-
 PLAIN = (bool, int, float, str, type(None))
 MAKING = re.compile("(create|add|load)_?")
 """How functions begin whose number stands for what they made."""
@@ -241,6 +239,7 @@ class Noted:
         return notes.got(found, text) if isinstance(key, Noted) else notes.found(found, text)
 
     def __call__(self, *given: Any, **named: Any) -> Any:
+        """Call it, and note that it was called."""
         return self.noted_notes.called(self, given, named)
 
 
@@ -281,6 +280,3 @@ def broken(line: str) -> list[str]:
         text, WIDTH, subsequent_indent=" " * 4, break_long_words=False, break_on_hyphens=False
     )
     return [part.replace("\x04", " ") for part in parts]
-
-
-__all__ = ["Notes", "Script", "constant", "scaled"]
