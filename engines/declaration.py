@@ -166,7 +166,7 @@ class Engine:
     ----------
     name, title : what a user types, and what a reader sees
     library, packages, install : the module to import, the distributions whose versions decide its
-        numbers, and what pip is told to install
+        numbers, by default of its name, and what pip is told to install, by default our extra
     build : builds a scene; only this and `Preset.stacks` may import the library, when called
     presets : from the library's own to the best there is, which the engine's plain name means
     core : whether the published studies ask it by default
@@ -185,8 +185,8 @@ class Engine:
     name: str
     title: str
     library: str
-    packages: tuple[str, ...]
-    install: str
+    packages: tuple[str, ...] = None  # type: ignore[assignment]  # names once it is made
+    install: str = ""
     build: Builder
     presets: tuple[Preset, ...]
     core: bool = False
@@ -198,6 +198,11 @@ class Engine:
     script: Callable[[Scene, Any, float], Script] | None = None
     factors: tuple[Factor, ...] = ()
     compiles: bool = False
+
+    def __post_init__(self) -> None:
+        if self.packages is None:
+            object.__setattr__(self, "packages", (self.library,))
+        object.__setattr__(self, "install", self.install or f"rocking[{self.name}]")
 
     @property
     def best(self) -> Preset:

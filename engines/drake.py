@@ -491,7 +491,6 @@ ENGINE = Engine(
     title="Drake",
     library="pydrake",
     packages=("drake",),
-    install="rocking[drake]",
     build=DrakeWorld,
     stacks=True,
     presets=(

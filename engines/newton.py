@@ -393,7 +393,6 @@ ENGINE = Engine(
     title="Newton",
     library="newton",
     packages=("newton", "warp-lang"),
-    install="rocking[newton]",
     build=NewtonWorld,
     stacks=True,
     presets=(

@@ -84,8 +84,8 @@ def to_bernstein(a: FloatArray, degree: int, b: FloatArray) -> None:
             b[i] += b[i - 1]
 
 
-def sign_changes(b: FloatArray, degree: int) -> int:
-    """Count the sign changes in b[0..degree], zeros left out."""
+def sign_changes(b: FloatArray, degree: int) -> tuple[int, float]:
+    """Count the sign changes in b[0..degree], zeros left out; return the last other one, too."""
     changes = 0
     last = 0.0
     for i in range(degree + 1):
@@ -93,15 +93,7 @@ def sign_changes(b: FloatArray, degree: int) -> int:
             if last * b[i] < 0.0:
                 changes += 1
             last = b[i]
-    return changes
-
-
-def last_sign(b: FloatArray, degree: int) -> float:
-    """Return the last of b[0..degree] that is not zero; 0 where all are."""
-    for i in range(degree, -1, -1):
-        if b[i] != 0.0:
-            return b[i]
-    return 0.0
+    return changes, last
 
 
 def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
@@ -168,7 +160,7 @@ def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> flo
     # pool[0..top] hold the intervals still to search, the leftmost, [low, low + width], on top
     while top >= 0:
         b = pool[top]
-        changes = sign_changes(b, degree) if low + width > start else 0
+        changes, last = sign_changes(b, degree) if low + width > start else (0, 0.0)
         if changes > 1 and depth < MAX_DEPTH:
             for i in range(degree + 1):
                 pool[top + 1][i] = b[i]
@@ -180,7 +172,7 @@ def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> flo
         if changes == 1:
             # of a root on the border of two intervals the signs here say in which of them it is,
             # those of values would say it of each anew
-            root = bracketed_root(a, degree, low, low + width, last_sign(b, degree) > 0.0)
+            root = bracketed_root(a, degree, low, low + width, last > 0.0)
             if root > start + SAME_ROOT:
                 return root
         low += width

@@ -157,7 +157,6 @@ ENGINE = Engine(
     name="mujoco",
     title="MuJoCo",
     library="mujoco",
-    packages=("mujoco",),
     install="rocking",
     build=MujocoWorld,
     stacks=True,
