@@ -38,6 +38,7 @@ VERDICTS = {
     "invalid": ("#999999", "not counted: slides or lifts off"),
 }
 """Verdict, or what is right -> its colour and name."""
+COLOURS = [colour for colour, _ in VERDICTS.values()]
 PLACES = {name: place for place, name in enumerate(VERDICTS)}
 CONTOURS = (("friction_needed", (0.3, 0.5, 1.0), "#000000"), ("min_normal", (0.0,), "#D55E00"))
 """Column of the contact forces, its levels and their colour."""
@@ -55,7 +56,7 @@ def draw_map(
             over = np.where(found >= 0, PLACES["overturns"], PLACES["survives"])
             side = np.where(found >= 0, PLACES["false"], PLACES["missed"])
             wrong = (found >= 0) != (exact >= 0)
-            codes, colours = np.where(wrong, side, over), _colours()
+            codes, colours = np.where(wrong, side, over), COLOURS
             title = f"{full_name(model)}: {100.0 * wrong.mean():.1f} % wrong"
             seen |= {name for name, place in PLACES.items() if place in codes}
         extent = (window.low, window.high, LEAST_ONSETS, window.onsets)
@@ -99,7 +100,7 @@ def draw_plane(rows: pd.DataFrame, rest_s: float) -> Figure:
     for axes, (source, of) in zip(grid, groups, strict=True):
         codes = of.pivot(index="onsets", columns="omega_over_p", values="code")
         codes = codes.ffill(axis=1).bfill(axis=1)
-        axes.pcolormesh(codes.columns, codes.index, codes, shading="nearest", **_scale(_colours()))
+        axes.pcolormesh(codes.columns, codes.index, codes, shading="nearest", **_scale(COLOURS))
         valid = of.loc[of["code"].notna() & (of["verdict"] != "invalid"), "verdict"]
         right = f"{(valid == 'right').mean():.0%}".replace("%", " %")
         axes.set_title(f"{title_of(str(source))}: {right} right", fontsize=10)
@@ -109,10 +110,6 @@ def draw_plane(rows: pd.DataFrame, rest_s: float) -> Figure:
     seen = [VERDICTS[name] for name in VERDICTS if PLACES[name] in set(asked["code"])]
     _key(drawing, seen, 3 if len(groups) >= ACROSS else 2)
     return drawing
-
-
-def _colours() -> list[str]:
-    return [colour for colour, _ in VERDICTS.values()]
 
 
 def _scale(colours: Sequence[str]) -> dict[str, Any]:
