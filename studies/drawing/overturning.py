@@ -69,7 +69,8 @@ def draw_map(
         f"Which pulses overturn a block: {window.title}\n"
         "lines: the friction μ that holds the exact motion, and where it lifts off", fontsize=11,
     )  # fmt: skip
-    looks = [(colour, name) for name, colour in MODES.items()]
+    parts = np.bincount(np.clip(exact, -1, 3).ravel() + 1, minlength=len(MODES)) / exact.size
+    looks = [look[::-1] for look, part in zip(MODES.items(), parts, strict=True) if part > 1e-3]
     _key(drawing, [*looks, *(VERDICTS[name] for name in VERDICTS if name in seen)], 3)
     return drawing
 
