@@ -2,48 +2,49 @@
 
 from __future__ import annotations
 
-import functools
-import math
 import sys
+from base64 import b64encode
 from collections.abc import Sequence
-from contextlib import closing, suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import pandas as pd
 from cyclopts import Parameter
 
-from analytic import RigidBlock, Still
-from analytic.motion import FloatArray
-from analytic.start import REST
+from analytic.motion import Still
 from engines import ENGINES
-from engines.declaration import AT_REST, Stepping
-from engines.registry import OWN, UnloadableError, named
-from engines.run.run import build
+from engines.declaration import AT_REST
+from engines.registry import named
 from engines.settings import perhaps
-from engines.world import ContactPhase, Moment, Step
 from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments
 from studies.kit.arguments import Out, Place
+from studies.kit.cluster import place_of
 from studies.kit.foreign import apart
-from studies.kit.jobs import Job, Row, answer
+from studies.kit.jobs import Job, Question, Row, answer, unanswered
 from studies.kit.options import Running
-from studies.kit.say import in_columns, out_of, part
+from studies.kit.run import run
+from studies.kit.say import duration, in_columns, one_line, out_of, part, say
 from studies.kit.store import FolderError, check, engines_of, provenance_of
 from studies.kit.study import Figures, Study, Tables
+from studies.kit.tables import write_text
+from studies.measures import world
 from studies.measures.costs import joint
 from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import engine_of, preset_of
-from studies.sources.registry import Source, announce, presets_of, resolve, scene_of
+from studies.sources.registry import announce, presets_of, resolve
 
-SWEEP, STEPS, EXTREMES, SCENES = (
-    f"score-{name}" for name in ("sweep", "steps", "extremes", "scenes")
+MODEL, SWEEP, STEPS, EXTREMES, SCENES = (
+    f"score-{name}" for name in ("model", "sweep", "steps", "extremes", "scenes")
 )
+WRONG = "wrong"
 FURTHER = {"score-frame": "frame", "score-slide": "slide"}
 """Table -> its scene."""
+LEAST_ERROR, ORDER = 1e-3, 0.4
+"""An error below the first is small; one of a step shrinks at least as that to this power."""
 NOISE = 1e-6
 """Relative change of a peak up to which two results are the same."""
 CASE = ["figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p"]
@@ -54,13 +55,6 @@ KNOWN = {
     EXTREMES: ("peak_ratio", "error", "energy_growth", "slip_widths"),
 }
 """Columns that a table has though none of its numbers may be known."""
-BLOCK = RigidBlock(width=0.5, height=1.5)
-DT_S, LEAN, RATE = 5e-3, 0.25 * BLOCK.alpha, 0.1 * BLOCK.alpha * BLOCK.p
-"""What is checked of a world: steps [s], and rotation and rate to which a block is put."""
-OFF = 0.47
-"""Part of a step from which on a moment is another one: what takes 16 steps within a step has
-less."""
-TURNED = "the sign is wrong; theta is positive where it leans towards +x"
 
 
 def uses_of(name: str) -> list[str]:
@@ -77,7 +71,10 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
     varied = [use for use in uses if preset_of(use) != AT_REST]
     along = [job for job in precision.jobs(varied, quick) if job.labels["table"] == precision.ALONG]
     known = FURTHER.values()
+    looked_at = dict.fromkeys([*uses, *(world.checked(engine_of(name)) for name in sources)])
+    one = Question(system=world.BLOCK, motion=Still())
     tables = {
+        MODEL: [Job(labels={}, case=one, source=use) for use in looked_at],
         SWEEP: swept,
         STEPS: along,
         EXTREMES: stability.matrix_jobs(uses, quick),
@@ -92,13 +89,35 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
 
 def measure(job: Job) -> Row:
     """Return what a job's table has of it."""
-    of = {SWEEP: answer, STEPS: precision.measure, EXTREMES: stability.measure}
+    of = {MODEL: look, SWEEP: answer, STEPS: precision.measure, EXTREMES: stability.measure}
     return {**of, SCENES: scenes.measure}[job.labels["part"]](job)
+
+
+def look(job: Job) -> Row:
+    """Return what a world shows of one block, and whether no case of it can be right."""
+    lines, problem = list[world.Line](), "" if job.lost is None else job.lost.message
+    try:
+        lines = [] if problem else world.check(job.asked)
+    except Exception as error:
+        problem = one_line(error)
+    wrong = [line for line in lines if line.wrong]
+    row = unanswered(problem or "; ".join(line.wrong for line in wrong))
+    row["outcome"] = row["outcome"] if row["message"] else "right"
+    row["refused"] = bool(problem) or any(line.refused for line in wrong)
+    return {**row, "lines": [[*line[:4], WRONG if line.wrong else "right"] for line in lines]}
+
+
+def model(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the lines of the model check, of all that was looked at."""
+    found = rows.loc[rows["part"] == MODEL, ["source", "lines"]].explode("lines").dropna()
+    columns = [*world.Line._fields[:4], "verdict"]
+    lines = pd.DataFrame(found["lines"].tolist(), columns=columns)
+    return lines.assign(source=found["source"].to_numpy())
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows of each table, without the columns of others."""
-    found: dict[str, pd.DataFrame] = {}
+    found = {MODEL: model(rows)}
     for name, known in KNOWN.items():
         mine = rows[rows["part"] == name].drop(columns=["part", "table"], errors="ignore")
         found[name] = mine[[it for it in mine if it in known or mine[it].notna().any()]]
@@ -118,20 +137,79 @@ def swept(tables: Tables) -> pd.DataFrame:
     return summarize(with_reference(tables[SWEEP]).assign(figure="all"))
 
 
+def along_step(tables: Tables) -> dict[str, pd.Series[float]]:
+    """Return the median errors of each preset in typical cases over the step, the longest first."""
+    rows = tables[STEPS]
+    rows = rows[rows["set"] == precision.TYPICAL].sort_values("value", ascending=False)
+    errors = rows.groupby(["source", "value"], sort=False)["error"].median()
+    return {str(source): errors[source] for source in rows["source"].unique()}
+
+
+def no_matter_of_the_step(errors: pd.Series[float]) -> bool:
+    """Return whether an error is large and a shorter step leaves more of it than a step may."""
+    if len(errors) < 2 or errors.iloc[-1] < LEAST_ERROR:
+        return False
+    return bool(errors.iloc[-1] / errors.iloc[-2] > (errors.index[-1] / errors.index[-2]) ** ORDER)
+
+
 def finding(tables: Tables) -> str:
-    """Say what its best preset predicts."""
+    """Say what of its model is wrong, what its best preset predicts, which error is no step's."""
     lines = swept(tables).sort_values("max_error", ascending=False, kind="stable")
     best = lines.sort_values("agree", kind="stable").iloc[-1]
-    return (
+    said = [
         f"{best['source']} predicts {out_of(best['agree'], best['cases'])} outcomes, and every "
         f"peak within {part(best['max_error'])}."
-    )
+    ]
+    off = tables[MODEL][tables[MODEL]["verdict"] == WRONG].drop_duplicates("quantity")
+    if len(off):
+        words = off["quantity"] + off["found"].map(" is {:.4g}".format)
+        words += off["expected"].map(" and must be {:.4g}".format)
+        said.insert(0, f"Model check: {'; '.join(words)}.")
+    said += [
+        f"The error of {source} does not shrink with the step "
+        f"({', '.join(map(part, errors[-2:]))}): a quantity is wrong, not the step."
+        for source, errors in along_step(tables).items()
+        if no_matter_of_the_step(errors)
+    ]
+    return "\n\n".join(said)
+
+
+def summary(tables: Tables) -> pd.DataFrame:
+    """Return ten lines about each preset."""
+    along, found = along_step(tables), {}
+    for line in swept(tables).to_dict("records"):
+        source = str(line["source"])
+        right = partial(right_of, tables, source)
+        found[source] = {
+            "outcomes right": out_of(line["agree"], line["cases"]),
+            "runs without a result": str(line["no_answer"]),
+            "median error of the peak": part(line["median_error"]),
+            "nine tenths of the errors are below": part(line["p90_error"]),
+            "largest error": part(line["max_error"]),
+            "run time of a case": duration(line["wall_s"] / line["cases"]),
+            "median errors, long to short steps": ", ".join(map(part, along.get(source, []))),
+            "extreme cases right": right(EXTREMES, "verdict", stability.Verdict.GOOD.value),
+            "slides right": right("score-slide", "verdict", "right"),
+            "frames right": right("score-frame", "right", True),
+        }
+    return pd.DataFrame(found).rename_axis("what").reset_index()
+
+
+def right_of(tables: Tables, source: str, name: str, column: str, good: object) -> str:
+    """Return how many of a preset's rows of a table are right, of those that count."""
+    if name not in tables:
+        return "-"
+    mine = tables[name]
+    mine = mine[(mine["source"] == source) & (mine[column] != stability.Verdict.INVALID.value)]
+    return out_of((mine[column] == good).sum(), len(mine)) if len(mine) else "-"
 
 
 def shown(tables: Tables) -> Tables:
-    """Return its errors, its verdicts and failures."""
+    """Return ten lines about it; then its model, its errors, its verdicts and failures."""
     extremes, along = tables[EXTREMES], precision.work_precision(tables[STEPS])
     return {
+        "Summary": summary(tables),
+        "The model check": tables[MODEL],
         "The paper's cases; errors of the peak are relative, over those that survive": (
             swept(tables).drop(columns=["figure", "max_difference"])
         ),
@@ -170,7 +248,7 @@ STUDY = Study(
     finding=finding,
     shown=shown,
     figures=figures,
-    needed=lambda rows: [row for row in rows if row["part"] == SWEEP],
+    needed=lambda rows: [row for row in rows if row["part"] in (MODEL, SWEEP)],
 )
 
 
@@ -185,8 +263,10 @@ def command(
 ) -> int:
     """Score one engine: the paper's cases, errors along the step, extreme cases, slides and frames.
 
-    A world that turns the wrong way round, or declares another `Moment` than the one at which its
-    velocities hold, is refused. With --against, the exit code is 0 whatever failed.
+    First a model check: ten quantities of one block, each with what it must be. A world that fails
+    in it, has a wrong sign, or declares another `Moment` than the one at which its velocities hold,
+    is refused; any other wrong quantity makes the exit code 1. Writes tables, findings.txt and
+    score.html. With --against, the exit code is 0 whatever failed.
 
     Parameters
     ----------
@@ -203,16 +283,48 @@ def command(
     name = known(engine)
     # what cannot be compared with it is refused now, and not after the last run
     earlier = None if against is None else read(against, engine_of(name))
-    if engine_of(name) not in OWN:
-        with suppress(UnloadableError):  # its cases will say so
-            if problem := apart(problem_of, name):
-                raise BadInputError(f"ENGINE is {engine!r}: {problem}")
-    code = STUDY.carry_out(out, jobs([name], quick), running, engine=name, quick=quick)
+    asked = jobs([name], quick)
+    check_model(engine, [job for job in asked if job.labels["part"] == MODEL], running)
+    code = STUDY.carry_out(out, asked, running, engine=name, quick=quick)
+    write_page(out)
     if earlier is None:
         return code
     versions, then = earlier
     print(f"\nSince {versions}, {since(then, STUDY.read(out))}")
     return 0
+
+
+def check_model(engine: str, asked: Sequence[Job], running: Running) -> None:
+    """Print the model check to stderr; refuse an engine of which no case can be right."""
+    rows = run(asked, measure, place_of(running, at_once=True))
+    for row in rows:
+        if row["refused"]:
+            raise BadInputError(f"ENGINE is {engine!r}: {row['message']} ({row['source']})")
+    lines = model(pd.DataFrame(rows))
+    whole = lines[lines["source"] == world.checked(engine_of(asked[0].source))]
+    say(f"model check:\n{in_columns(whole)}")
+
+
+def write_page(folder: Path) -> None:
+    """Write a page to hand on, of the tables and pictures of a folder."""
+    from jinja2 import Environment, PackageLoader
+
+    tables = STUDY.read(folder)
+    page = Environment(loader=PackageLoader("studies", "."), autoescape=True)
+    text = page.get_template("score.html.jinja").render(
+        finding=finding(tables).split("\n\n"),
+        tables={
+            title: table.to_html(index=False, float_format="{:.4g}".format)
+            for title, table in shown(tables).items()
+            if len(table)
+        },
+        pictures={
+            STUDY.caption_of(path.stem): b64encode(path.read_bytes()).decode()
+            for path in sorted(folder.glob("*.png"), reverse=True)
+        },
+        made=provenance_of(folder),
+    )
+    write_text(folder / "score.html", text)
 
 
 def known(engine: str) -> str:
@@ -228,70 +340,9 @@ def known(engine: str) -> str:
         raise BadInputError(f"ENGINE is {engine!r}{near}; it must be one of {words}")
     sys.path.append(str(Path.cwd()))  # not first: what this process imports is found before it
     try:
-        return announce(engine, functools.partial(apart, named))
+        return announce(engine, partial(apart, named))
     except ValueError as error:
         raise BadInputError(f"ENGINE: {error}") from error
-
-
-def problem_of(engine: str) -> str:
-    """Say in a line what the world of one of an engine's presets does wrong, if any does.
-
-    What it lacks or raises is no matter of this: its cases will say so.
-    """
-    for use in uses_of(engine):
-        with suppress(BaseException):
-            if problem := _problem(resolve(use)):
-                return f"{problem} ({use})"
-    return ""
-
-
-def _problem(source: Source) -> str:
-    _, (put,) = moved(source, start=(LEAN, RATE))
-    if min(put[2:]) < 0.0:
-        told = f"put to theta {LEAN:.3g} and rate {RATE:.3g}, its state says {{:.3g}} and {{:.3g}}"
-        return f"{told.format(*put[2:])}: {TURNED}"
-    if source.used.stepping is Stepping.OWN:
-        return ""
-    if "base" in source.declared.frames:
-        onset = BLOCK.gravity * math.tan(BLOCK.alpha)
-        theta = moved(source, [(2.0 * onset, -BLOCK.gravity)] * 28)[1][-1, 2]
-        if theta < -1e-3:
-            return f"pulled towards +x, its block turns to theta {theta:.3g}: {TURNED}"
-    if abs(late := lateness(source)) >= OFF:
-        return f"its velocities hold {late:+.2g} of a step after the Moment that its world declares"
-    return ""
-
-
-def lateness(source: Source) -> float:
-    """Return by which part of a step velocities hold later than a world declares.
-
-    A block in the air is pulled during one step: all of the velocity gained moves it within that
-    step where the velocity is changed first, half where both go together, else none. It is nan if
-    no pull moves a block so.
-    """
-    pull = 10.0 * BLOCK.gravity
-    ups = [pull] * 4 + [0.0] * 24 + [-pull] + [0.0] * 4
-    moment, poses = moved(source, [(0.0, up) for up in ups])
-    before, within, after = np.diff(poses[:, 1])[[-6, -5, -1]]
-    if not 0.5 < (before - after) / (pull * DT_S**2) < 2.0:
-        return math.nan
-    return float(Moment.NEXT.value - (within - before) / (after - before) - moment.value)
-
-
-def moved(
-    source: Source, pulls: Sequence[tuple[float, float]] = (), start: tuple[float, float] = REST
-) -> tuple[Moment, FloatArray]:
-    """Return a world's moment, and the poses of a block that is pulled along and up [m/s2]."""
-    frame = "base" if "base" in source.declared.frames else None  # a base that moves is pulled, too
-    step_of = {"step": DT_S * BLOCK.p, "frame": frame, "start": start}
-    scene = scene_of(BLOCK, Still(), source.preset, **step_of)
-    with closing(build(source.declared.use(scene))) as world:
-        poses = [np.array(world.state(), float)[0]]
-        for number, (x, z) in enumerate(pulls, start=1):
-            pull = (x, z, 0.0, 0.0, 0.0)
-            world.step(Step(DT_S, number * DT_S, DT_S, *pull, ContactPhase.SWING, 0.0))
-            poses.append(np.array(world.state(), float)[0])
-        return world.moment, np.array(poses)
 
 
 def read(folder: Path, engine: str) -> tuple[str, Tables]:

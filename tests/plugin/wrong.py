@@ -1,6 +1,7 @@
 """Engines with a fault of their own in each class, most of them the engine of one file."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 from my_engine import World
 from rocking_moreau import ENGINE, MoreauSettings, MoreauWorld
@@ -41,6 +42,60 @@ class Moreau(MoreauWorld):
 Middle, End = (
     type("Staggered", (World,), {"moment": each}) for each in (Moment.MIDDLE, Moment.END)
 )
+
+
+class Spun(World):
+    """Its moment of inertia is 3 % too large."""
+
+    def __init__(self, scene, settings, dt_s):
+        super().__init__(scene, settings, dt_s)
+        self.body.moment *= 1.03
+
+
+class Heavy(World):
+    """Its mass is not that of the moment of inertia."""
+
+    def __init__(self, scene, settings, dt_s):
+        super().__init__(scene, settings, dt_s)
+        self.body.mass *= 1.1
+
+
+class Standard(World):
+    """Its gravity is another planet's."""
+
+    def step(self, step):
+        super().step(step._replace(pull_z=1.02 * step.pull_z))
+
+
+class Damped(World):
+    def __init__(self, scene, settings, dt_s):
+        super().__init__(scene, settings, dt_s)
+        self.space.damping = 0.9
+
+
+class Wide(World):
+    """Its box is 2 % too wide, and as heavy as it should be."""
+
+    def __init__(self, scene, settings, dt_s):
+        (block,) = scene.bodies
+        larger = replace(block, width=1.02 * block.width, density=block.density / 1.02)
+        super().__init__(SimpleNamespace(bodies=[larger]), settings, dt_s)
+
+
+class Slippery(World):
+    def __init__(self, scene, settings, dt_s):
+        super().__init__(scene, replace(settings, friction=0.5 * settings.friction), dt_s)
+
+
+class Bouncing(World):
+    def __init__(self, scene, settings, dt_s):
+        super().__init__(scene, settings, dt_s)
+        for shape in self.space.shapes:
+            shape.elasticity = 0.5
+
+
+class Faultless(World):
+    fault = None
 
 
 class Silent(World):
