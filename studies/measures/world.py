@@ -138,13 +138,20 @@ def in_contact(source: Source) -> Iterator[Line]:
 
 
 def check(source: Source) -> list[Line]:
-    """Return what a world shows: of the preset that `checked` names all, of others what refuses."""
-    lines = list(in_the_air(source))
-    if source.used.stepping is not Stepping.OWN and "base" in source.declared.frames:
-        lines += on_the_base(source)
-    if source.name != checked(source.engine):
-        return [line for line in lines if line.refused]
-    return lines if source.used.stepping is Stepping.OWN else [*lines, *in_contact(source)]
+    """Return what a world shows: of the preset that `checked` names all, of others what refuses.
+
+    Where a line refuses, the contact is not looked at.
+    """
+    with np.errstate(all="ignore"):  # what never moves has no rebound: nan, which is wrong
+        lines = list(in_the_air(source))
+        if source.used.stepping is Stepping.OWN:
+            return lines
+        if "base" in source.declared.frames:
+            lines += on_the_base(source)
+        if source.name != checked(source.engine):
+            return [line for line in lines if line.refused]
+        refused = any(line.refused and line.wrong for line in lines)
+        return lines if refused else [*lines, *in_contact(source)]
 
 
 def steps_of(source: Source) -> int:

@@ -60,8 +60,8 @@ class Heavy(World):
         self.body.mass *= 1.1
 
 
-class Standard(World):
-    """Its gravity is another planet's."""
+class Pulled(World):
+    """By more than its weight."""
 
     def step(self, step):
         super().step(step._replace(pull_z=1.02 * step.pull_z))

@@ -16,7 +16,8 @@ from studies.__main__ import run
 from studies.kit.run import run as measured
 from studies.kit.store import write_record
 from studies.kit.tables import write_table
-from studies.score import CASE, EXTREMES, STUDY, SWEEP, lateness, problem_of, since, uses_of
+from studies.measures.world import OFF, check, checked
+from studies.score import CASE, EXTREMES, MODEL, STEPS, STUDY, SWEEP, since, uses_of
 from studies.sources.registry import announce, resolve
 
 MINE = "my_engine:World"
@@ -35,7 +36,8 @@ MINE = "my_engine:World"
         ("rocking_moreau:ENGINE", "is called 'moreau', as another is"),
         ("wrong:SPACED", "is called 'my engine'; a name is made of letters"),
         ("rocking_moreau:SLACK", "is neither a declaration nor what builds a world"),
-        ("wrong:Turned", "ENGINE is 'wrong:Turned': put to theta 0.0804 and rate"),
+        ("wrong:Turned", "ENGINE is 'wrong:Turned': rotation or rate at the start, over what it"),
+        ("wrong:Silent", "ENGINE is 'wrong:Silent': RuntimeError: there is no answer"),
     ],
 )
 def test_what_is_no_engine_is_refused_in_a_line(place, message, alone, tmp_path, capsys):
@@ -48,7 +50,7 @@ def test_quick_asks_a_part_of_every_preset():
     quick = score.jobs(["moreau"], True)
     counts = Counter(job.labels["part"] for job in quick)
     assert counts[SWEEP] == 3 * len(range(0, 480, 11))
-    assert min(counts.values()) > 0 and len(counts) == 4
+    assert min(counts.values()) > 0 and len(counts) == 5
     assert {job.source.partition(":")[2] for job in quick} == {"default", "tuned", "landing"}
     assert {job.source for job in score.jobs(["moreau:tuned"], True)} == {"moreau:tuned"}
 
@@ -57,18 +59,11 @@ def test_each_table_has_its_rows_with_its_own_columns(few):
     asked = [job for job in few(["mujoco:landing"], True) if job.labels["part"] != EXTREMES]
     tables = STUDY.tabulate(pd.DataFrame(measured(asked, score.measure)))
     assert {name: len(table) for name, table in tables.items() if len(table)} == {
-        "score-sweep": 2, "score-steps": 2, "score-frame": 1
+        "score-model": 13, "score-sweep": 2, "score-steps": 2, "score-frame": 1
     }  # fmt: skip
     assert tables[SWEEP]["figure"].dtype == int and "method" not in tables[SWEEP]
     assert tables["score-steps"]["runs"].min() >= 1
     assert abs(tables["score-frame"]["error"].item()) < 1e-2
-
-
-def test_an_engine_that_never_answers_has_rows_that_say_why(alone, few, tmp_path, capsys):
-    pytest.importorskip("pymunk")
-    assert run(["score", "wrong:Silent", "--quick", "--out", str(tmp_path / "out")]) == 1
-    assert "there is no answer" in capsys.readouterr().err
-    assert [path.name for path in (tmp_path / "out").glob("*.png")] == ["extremes.png"]
 
 
 @pytest.mark.slow
@@ -80,6 +75,7 @@ def test_the_page_the_result_and_what_moved_since(alone, few, tmp_path, capsys):
     assert run(asked) == 0
     assert capsys.readouterr().out.strip() == (out / "findings.txt").read_text().strip()
     assert {path.name for path in out.glob("*.png")} == {"score.png", "extremes.png"}
+    assert (out / "score.html").read_text().count("<table") >= 6
     tables = STUDY.read(out)
     assert tables[SWEEP]["figure"].dtype == int and "verdict" not in tables[SWEEP]
     swept, errors = score.answers(tables).set_index(["source", "case"]), []
@@ -153,7 +149,8 @@ def test_the_best_preset_is_the_one_that_is_right_most_often(monkeypatch):
         {"source": "e:last", "cases": 4, "agree": 3, "max_error": 0.01},
     ]
     monkeypatch.setattr(score, "swept", lambda _: pd.DataFrame(lines))
-    found = score.finding({})
+    monkeypatch.setattr(score, "along_step", lambda _: {})
+    found = score.finding({MODEL: pd.DataFrame({"verdict": []})})
     assert found.startswith("e:two") and "all 4" in found and "10 %" in found
 
 
@@ -165,29 +162,58 @@ ENGINES_HERE = [
 
 @pytest.mark.parametrize("name", ENGINES_HERE)
 def test_no_engine_is_accused(name):
-    assert problem_of(name) == ""
     # what takes n steps within a step has its velocity at 1 - 1/2n: Rapier's own settings take 4, 8
     substeps = {"rapier:default": 4, "rapier:default-at-rest": 4, "rapier:recommended": 8}
     for use in map(resolve, uses_of(name)):
-        if use.used.stepping is not Stepping.OWN:
-            lag = 0.5 - 0.5 / substeps.get(f"{name}:{use.preset}", 1)
-            assert lateness(use) == pytest.approx(lag, abs=0.03)
+        lines = check(use)
+        assert [line.wrong for line in lines if line.wrong] == []
+        own = use.used.stepping is Stepping.OWN
+        assert len(lines) == (1 if own else 10 if use.name == checked(name) else 3)
+        for moment in (line for line in lines if line.within == OFF):
+            lag = 0.5 - 0.5 / substeps.get(use.name, 1)
+            assert moment.expected - moment.found == pytest.approx(lag, abs=0.03)
 
 
-NO_WORLDS = {
-    "wrong:Turned": "its state says -0.0804 and -0.0982",
-    "wrong:Backwards": "its state says 0.0804 and -0.0982",
-    "wrong:Mirrored": "pulled towards +x, its block turns to theta -0.0",
-    "wrong:Middle": "hold +1 of a step",
-    "wrong:End": "hold +0.5 of a step",
-    "wrong:Moreau": "hold +0.5 of a step",
-    "hostile:Calm": "",  # what does not move has no moment
-    "my_engine:World": "",
+REFUSED = True
+WRONG = {
+    "wrong:Turned": (REFUSED, "-1 and must be 1"),
+    "wrong:Backwards": (REFUSED, "-1 and must be 1"),
+    "wrong:Mirrored": (REFUSED, "-1 and must be 1"),
+    "wrong:Middle": (REFUSED, "0.5 and must be 1.5"),
+    "wrong:End": (REFUSED, "1 and must be 1.5"),
+    "wrong:Moreau": (REFUSED, "0.5 and must be 1"),
+    "wrong:Silent": (REFUSED, "RuntimeError: there is no answer"),
+    "wrong:Faultless": (REFUSED, "TypeError: "),
+    "hostile:Calm": (REFUSED, "0 and must be 1"),
+    "wrong:Spun": (not REFUSED, "inertia over mass [m2] is 0.2146 and must be 0.2083"),
+    "wrong:Heavy": (not REFUSED, "inertia over mass [m2] is 0.1894 and must be 0.2083"),
+    "wrong:Pulled": (not REFUSED, "pull times step, is 1.02 and must be 1"),
+    "wrong:Damped": (not REFUSED, "0.9908 and must be 1"),
+    "wrong:Wide": (not REFUSED, "0.3277 and must be 0.3218"),
+    "wrong:Slippery": (not REFUSED, "0.15 and must be 0.3"),
+    "wrong:Bouncing": (not REFUSED, "0.2266 and must be 0"),
+    "my_engine:World": (not REFUSED, ""),
 }
+"""Place of an engine -> whether it is refused, and what the model check says of it."""
 
 
-@pytest.mark.parametrize("place", NO_WORLDS)
-def test_what_is_no_world_is_told_in_a_line(place, alone):
+@pytest.mark.parametrize("place", WRONG)
+def test_one_wrong_quantity_is_named(place, alone):
     pytest.importorskip("pymunk")
-    found = problem_of(announce(place))
-    assert NO_WORLDS[place] in found and bool(found) == bool(NO_WORLDS[place])
+    engine = announce(place, lambda place: place.rpartition(":")[2])
+    (job,) = (job for job in score.jobs([f"{engine}:tuned"], True) if job.labels["part"] == MODEL)
+    row, (refused_, words) = score.look(job), WRONG[place]
+    assert (row["refused"], row["outcome"]) == (refused_, "failed" if words else "right")
+    assert words in row["message"]
+    lines = score.model(pd.DataFrame([{**job.labels, "source": engine, **row}]))
+    assert len(lines) == (0 if "Error" in words else 10 - 4 * refused_ - ("Calm" in place))
+    assert bool(words) == ("Error" in words or (lines["verdict"] == "wrong").any())
+
+
+@pytest.mark.parametrize(("last", "said"), [(0.080, True), (0.024, False), (9e-4, False)])
+def test_an_error_that_no_step_shrinks_is_none_of_the_step(last, said):
+    steps = pd.DataFrame({"source": "e:one", "set": "typical", "value": [0.05, 0.01, 2e-3]})
+    errors = score.along_step(
+        {STEPS: steps.assign(error=[0.3, max(0.083, 100 * last * (last < 1e-3)), last])}
+    )["e:one"]
+    assert score.no_matter_of_the_step(errors) is said
