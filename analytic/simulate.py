@@ -21,13 +21,7 @@ from analytic.slide import SlidingBlock
 from analytic.slipping import slid
 from analytic.start import REST, Posed, check_window, pose
 
-OUTCOMES = (
-    Outcome.AT_REST,
-    Outcome.ROCKED,
-    Outcome.OVERTURNED,
-    Outcome.FAILED,
-    Outcome.FAILED,
-)
+OUTCOMES = (Outcome.AT_REST, Outcome.ROCKED, Outcome.OVERTURNED, Outcome.FAILED, Outcome.FAILED)
 """In the order of the codes in `analytic.kernels.excursions`."""
 FAILURES = {
     TOO_LONG: Problem(Reason.UNDECIDED, "the response takes too many steps"),

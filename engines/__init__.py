@@ -46,11 +46,4 @@ The conformance tests run over the registry and take their tolerances from the d
 from engines.registry import ENGINES, core_engines, installed_engines
 from engines.scene import ACCURACIES, FRAMES, Scene
 
-__all__ = [
-    "ACCURACIES",
-    "ENGINES",
-    "FRAMES",
-    "Scene",
-    "core_engines",
-    "installed_engines",
-]
+__all__ = ["ACCURACIES", "ENGINES", "FRAMES", "Scene", "core_engines", "installed_engines"]

@@ -129,12 +129,7 @@ class Monitor:
     """Looks at a run, in ordinary steps dt_s [s] of an engine whose velocity holds at a moment."""
 
     def __init__(
-        self,
-        scene: Scene,
-        dt_s: float,
-        stepping: Stepping,
-        moment: Moment,
-        resolution: Resolution,
+        self, scene: Scene, dt_s: float, stepping: Stepping, moment: Moment, resolution: Resolution
     ) -> None:
         rocking = scene.layout.rocking
         pace = begin_pace(scene, dt_s, stepping, moment, resolution)

@@ -9,15 +9,7 @@ import pytest
 from given import BLOCK, pulse
 from independent import peak_and_impacts
 
-from analytic import (
-    MODELS,
-    Impact,
-    Outcome,
-    RigidBlock,
-    Still,
-    conditioning,
-    simulate,
-)
+from analytic import MODELS, Impact, Outcome, RigidBlock, Still, conditioning, simulate
 from analytic.criteria import free_amplitude, quarter_period
 from studies import respond
 

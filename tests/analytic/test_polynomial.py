@@ -6,11 +6,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from analytic.kernels.polynomial import (
-    MAX_DEPTH,
-    ORDER,
-    next_root,
-)
+from analytic.kernels.polynomial import MAX_DEPTH, ORDER, next_root
 
 
 def all_roots(coefficients):

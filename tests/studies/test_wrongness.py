@@ -7,14 +7,7 @@ import pytest
 
 from analytic.response import Outcome
 from studies.measures.differences import summarize, with_reference
-from studies.measures.wrongness import (
-    FALL,
-    KINDS,
-    MEANINGS,
-    NO_ANSWER,
-    REST,
-    kinds_of,
-)
+from studies.measures.wrongness import FALL, KINDS, MEANINGS, NO_ANSWER, REST, kinds_of
 
 REST_WORD, ROCKED, OVER, _, FAILED = (outcome.value for outcome in Outcome)
 
