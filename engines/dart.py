@@ -216,6 +216,12 @@ class DartWorld:
         elif self._way:
             self._place = step.base_x * unit
 
+    @property
+    def yaw(self) -> float | None:
+        """How far the first body has turned; see `engines.world.World`."""
+        turn = self._block.getTransform().rotation()
+        return None if self._s.planar else math.atan2(turn[1, 0], turn[0, 0])
+
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
         (x, z, theta), unit = self.coordinates, self._unit
@@ -368,6 +374,12 @@ RECOMMENDED = (
 )
 """What it recommends: no page of it is on stiff contact."""
 
+PASTED = (
+    Citation("solver", "NsgsFrictionSolver: with Dantzig's a pivot slides", "measured here"),
+    Citation("inertia", "set beside the mass, which leaves it at 1 kg m²", "measured here"),
+    Citation("sleeping", "off, for who needs the path of before", "dart pull requests 2920, 3086"),
+)
+
 FACTORS = (
     factor("aside", level("no", trap=MASSLESS, aside=False), name="base in the plane"),
     factor("unit", level("1e3 a metre", unit=1e3), name="unit of length"),
@@ -418,6 +430,7 @@ ENGINE = Engine(
         NAIVE,
         NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, sleeping=False),
+        NAIVE.pasted(*PASTED, solver="NSGS", sleeping=False),
         Preset(name="tuned", settings=TUNED, step=5e-4),
         Preset(
             name="landing",

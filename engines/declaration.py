@@ -60,6 +60,9 @@ RECOMMENDED = "recommended"
 UNTUNED = ("default", AT_REST, RECOMMENDED)
 """Names of the presets that are the library's own."""
 
+PASTED = "pasted"
+"""The library's own ways, but for a few lines to paste: a free body in space on a floor at rest."""
+
 REST_S = 0.2
 """For so long [s] the ground is at rest in these before the motion, in equal steps: a body that was
 just put down carries no load yet, and what an engine makes of that is no error of its rocking. A
@@ -69,6 +72,7 @@ TITLES = {
     "default": "as its documentation shows it",
     AT_REST: "the same on a base at rest",
     RECOMMENDED: "as its documentation recommends for stiff contact",
+    PASTED: "a few lines to paste, for a body of one's own",
     "tuned": "best at a fixed step",
     "landing": "steps that land on impacts",
 }
@@ -85,7 +89,8 @@ class Preset:
     settings : the engine's settings class, one of whose fields is "friction"
     stepping : who chooses the steps
     step, step_s : p dt of equal steps, or the library's own [s]
-    documented : what the documentation sets of "default" and "recommended", and where it says so
+    documented : what the documentation sets of "default" and "recommended", and where it says so;
+        of "pasted" where each line is from
     frame : one of `FRAMES`, where a scene does not say
     accuracy_knob : the setting that trades time for accuracy where that is not the step, and its
         values from cheap to dear
@@ -141,6 +146,12 @@ class Preset:
             step_s=step_s or self.step_s,
             documented=documented,
         )
+
+    def pasted(self, *documented: Citation, **settings: Any) -> "Preset":
+        """Return the same with a few lines to paste, on a base at rest at a friction of 0.8."""
+        changed = replace(self.settings, **{"friction": 0.8, **settings})
+        still = replace(self.at_rest(), name=PASTED, settings=changed, own={})
+        return replace(still, documented=documented, title=TITLES[PASTED])
 
     def takes(self, **settings: Any) -> bool:
         """Return whether its settings can be changed so."""

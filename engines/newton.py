@@ -16,7 +16,7 @@ import numpy as np
 
 from engines.declaration import Citation, Engine, Precision, Preset
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import NO_JAM, imported, silence
+from engines.parts import NO_JAM, imported, silence, yaw_of
 from engines.run.export import Notes
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, setting
@@ -244,6 +244,12 @@ class NewtonWorld:
         self._warp.capture_launch(self._recorded.graph)
         if self._moving:
             self.lag_m = max(self.lag_m, abs(float(self._place[-1, 0]) - step.base_x))
+
+    @property
+    def yaw(self) -> float:
+        """How far the first body has turned; see `engines.world.World`."""
+        x, y, z, w = self._place[0, 3:].tolist()
+        return yaw_of(w, x, y, z)
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""

@@ -36,6 +36,11 @@ def iterations_for(scene: Scene, iterations: int | None, sweeps: float | None) -
     return min(math.ceil(sweeps / math.sin(scene.system.alpha) ** 2), MOST_ITERATIONS)
 
 
+def yaw_of(w: float, x: float, y: float, z: float) -> float:
+    """Return how far a quaternion, its real part first, turns about the vertical [rad]."""
+    return math.atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
+
+
 MOST_RETURNED = 2.0
 """A step that is much longer than the one before returns no more than this part of a velocity."""
 

@@ -108,7 +108,8 @@ class World(Protocol):
     time [s], the base moving as the scene says, and returns the steps taken. Where its base moves,
     ``lag_m`` is the largest distance [m] of the base, at the end of a step, from where it should
     have been, and ``base_x_m`` where the base is [m] as the state is read: poses are relative to
-    it. ``drive(runs, lists, most)`` takes up to so many steps as long as the run goes on, in a
+    it. ``yaw`` is how far the first body has turned about the vertical [rad], None in the plane.
+    ``drive(runs, lists, most)`` takes up to so many steps as long as the run goes on, in a
     compiled loop of the functions of `engines.run.look`, and returns how many; it is None where the
     library is not as it should be for it.
     """

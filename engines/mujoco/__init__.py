@@ -94,6 +94,14 @@ RECOMMENDED = (
 )
 """What it recommends for rigid contact in place of its defaults, which it does not."""
 
+PASTED = (
+    Citation(
+        "contact",
+        "solref in the direct form, -0.01/dt² and -1/dt; solimp 0.9999: rigid, and damped at once",
+        f"{MODELING}, Solver parameters; the numbers measured here",
+    ),
+)
+
 FACTORS = (
     factor(
         "cone",
@@ -172,6 +180,7 @@ ENGINE = Engine(
             solver="Newton",
             tolerance=1e-10,
         ),
+        NAIVE.pasted(*PASTED, geom_reference=(0.01, 1.0), impedance=(0.9999, 0.9999, 0.001)),
         Preset(name="tuned", settings=TUNED, step=2.5e-4, stacked=STACKED, sliding=SLIDING),
         Preset(
             name="landing",

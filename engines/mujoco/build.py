@@ -21,6 +21,7 @@ from engines.mujoco.contact import (
     prepare,
     read,
 )
+from engines.parts import yaw_of
 from engines.run.look import compiled, records
 from engines.scene import BASE, Scene
 from engines.settings import check, disagreement, setting
@@ -72,6 +73,7 @@ class MujocoSettings:
     solref: the contact, and the weld of a moving base, in the library's other form, in place of
         damping and stiffness: its time constant over the ordinary step and its damping ratio, both
         positive: the library takes a pair with one zero for its own default, and goes on.
+    geom_reference: k dt^2 and b dt in one line of defaults for all geoms, as is the impedance then.
     floor: how a base that moves is moved: by a "weld" to a body that is, by its "surfacevel", or by
         "position" alone.
     by_phase, reflection, preload: use `stiffness` at rest alone; give the velocity of the corner
@@ -104,6 +106,7 @@ class MujocoSettings:
     integrator: str | None = setting(names=("Euler", "RK4", "implicit", "implicitfast"))
     noslip_iterations: int | None = setting(least=0)
     solref: tuple[float, float] | None = None
+    geom_reference: tuple[float, float] | None = None
     margin: float | None = setting(least=0.0)
     floor: str = setting("weld", names=("weld", "surfacevel", "position"))
 
@@ -142,6 +145,13 @@ class MujocoSettings:
         surface, whole, _, *curve = self.impedance
         return surface, whole, self.soft_surface * scene.system.gravity * dt_s**2, *curve
 
+    def direct(self, dt_s: float) -> tuple[float, ...]:
+        """Return solref of all geoms for steps [s], minus a stiffness and a damping; or none."""
+        if self.geom_reference is None:
+            return ()
+        stiffness, damping = self.geom_reference
+        return -stiffness / dt_s**2, -damping / dt_s
+
 
 def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
     """Return the model of a scene in MuJoCo's own language, its bodies upright, for steps [s]."""
@@ -156,8 +166,11 @@ def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
     base, floor, weld = _base(scene, s, held, reference)
     shapes = f'{held} margin="{margin}" {reference}'
     bodies = "".join(_body(scene, number, s, shapes) for number in range(len(scene.bodies)))
-    pairs = meshes = ""
-    if s.impedance is not None:
+    pairs = meshes = defaults = ""
+    if s.geom_reference is not None:
+        own = f'solref="{_row(s.direct(dt_s))}" solimp="{_row(s.impedance or ())}"'
+        defaults = f"<default><geom {own}/></default>"
+    elif s.impedance is not None:
         if s.damping is not None:
             by = s.impedance[1], dt_s, s.stiffness or 0.0
             normal, along = direct(*by, s.damping), direct(*by, s.sliding_damping or 0.0)
@@ -171,8 +184,8 @@ def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
         each = (f'<mesh name="{_named("hull", n)}" vertex="{points}"/>' for n, points in hulls)
         meshes = f"<asset>{''.join(each)}</asset>"
     return (
-        f'<mujoco><option {options}timestep="{dt_s!r}">{flag}</option>{meshes}<worldbody>{base}'
-        f"{bodies}{floor}</worldbody><contact>{pairs}</contact>{weld}</mujoco>"
+        f'<mujoco><option {options}timestep="{dt_s!r}">{flag}</option>{defaults}{meshes}<worldbody>'
+        f"{base}{bodies}{floor}</worldbody><contact>{pairs}</contact>{weld}</mujoco>"
     )
 
 
@@ -302,6 +315,11 @@ class MujocoWorld:
         """How far a welded base was from where it should have been; see `engines.world.World`."""
         return float(self.held.lag) if self.held.welded else None
 
+    @property
+    def yaw(self) -> float | None:
+        """How far the first body has turned; see `engines.world.World`."""
+        return None if self.settings.planar else yaw_of(*self._data.qpos[3:7])
+
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
         read(self.held, self.arrays)
@@ -335,8 +353,12 @@ class MujocoWorld:
         pairs |= {name: self._read_option(name) for name in OPTIONS}
         exact = model.opt.enableflags & int(self._mj.mjtEnableBit.mjENBL_DIAGEXACT)
         pairs["diagexact"] = (s.diagexact, bool(exact))
+        for i, value in enumerate(s.direct(dt_s)):
+            pairs[f"solref {i}"] = (value, model.geom_solref[-1, i])
+        found = model.pair_solimp if model.npair else model.geom_solimp
         for i, value in enumerate(s.solimp(scene, dt_s)):
-            pairs[f"impedance {i}"] = (value, model.pair_solimp[0, i])
+            pairs[f"impedance {i}"] = (value, found[0, i])
+        if model.npair:
             pairs["friction of the pair"] = (s.friction, model.pair_friction[0, 0])
         return disagreement(pairs)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from engines.parts import imported, iterations_for, silence
+from engines.parts import imported, iterations_for, silence, yaw_of
 from engines.run.export import Notes
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, setting
@@ -321,6 +321,12 @@ class BulletWorld:
             p.resetBaseVelocity(self.base, [step.base_velocity, 0.0, 0.0], physicsClientId=client)
         else:
             p.resetBasePositionAndOrientation(self.base, place, UPRIGHT, client)
+
+    @property
+    def yaw(self) -> float:
+        """How far the first body has turned; see `engines.world.World`."""
+        *_, (x, y, z, w) = self._p.getBasePositionAndOrientation(self.bodies[0], self._client)
+        return yaw_of(w, x, y, z)
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""

@@ -17,8 +17,9 @@ from engines.run.watch import problem_of, response_of
 from engines.scene import Scene
 from engines.world import UNLIMITED, FloatArray, Resolution, World
 
-LAG = "floor_lag_m"
-"""Observable: how far [m] a base that moves was from where it should have been, at most."""
+LAG, YAW = "floor_lag_m", "yaw_deg"
+"""Observables: how far [m] a base that moves was from where it should have been, at most; how far
+[degrees] the first body has turned about the vertical in the end, where it is free to."""
 
 LOOK_AROUND = 256
 """Steps between two looks at the clock, and at what the engine knows to have gone wrong."""
@@ -111,7 +112,10 @@ def simulate_world(
         reason, message = problem
         return Response.failure(message, reason=reason, steps=steps, wall_s=wall_s)
     answer, lag = answer_of(scene, monitor), getattr(world, "lag_m", None)
-    observables = answer.observables if lag is None else {**answer.observables, LAG: float(lag)}
+    yaw = getattr(world, "yaw", None)
+    beside = {LAG: lag, YAW: None if yaw is None else abs(math.degrees(yaw))}
+    known = {name: float(value) for name, value in beside.items() if value is not None}
+    observables = {**answer.observables, **known}
     return replace(answer, steps=steps, wall_s=wall_s, observables=observables)
 
 

@@ -20,6 +20,9 @@ block that overturns until it passes the critical rotation for good."""
 FRICTION = 1.0
 """What a frame's contacts may need: those of squat columns need more than engines may have."""
 
+MOST_NEEDED = 0.72
+"""What a box may need that stands on a floor at a friction of 0.8."""
+
 CALM = 10.0
 """Condition number up to which a frame is calm."""
 SLIPS = 1e-3, 10.0
@@ -89,6 +92,29 @@ def calm_frames(seed: int) -> Iterator[RandomFrame]:
             kappas = conditioning(drawn.block, drawn.motion)  # nan where it does not survive
             if max(map(abs, kappas)) < CALM and _is_sure(drawn):
                 yield drawn
+
+
+def free_boxes(seed: int) -> Iterator[RandomCase]:
+    """Yield boxes that rock on a floor at a friction of 0.8, without end, the same for a seed.
+
+    B from 0.3 to 1 m, H/B from 2 to 4.5, half and full sines of 1.1 to 1.8 onsets, omega/p from 0.8
+    to 4. Kept are those that need a friction of 0.72 at most and of which the reference is sure.
+    """
+    generator = np.random.default_rng(seed)
+    kept = count()
+    while True:
+        drawn = generator.uniform([0.3, 2.0, 1.1, 0.8], [1.0, 4.5, 1.8, 4.0]).tolist()
+        width, aspect, onsets, frequency = drawn
+        box = RandomCase(
+            case=0,
+            aspect=aspect,
+            width_m=width,
+            half_cycles=int(generator.integers(1, 3)),
+            amplitude_g=onsets / aspect,
+            omega_over_p=frequency,
+        )
+        if simulate(box.block, box.motion).friction_needed <= MOST_NEEDED and _is_sure(box):
+            yield replace(box, case=next(kept))
 
 
 def slides(seed: int) -> Iterator[tuple[SlidingBlock, SinePulse]]:

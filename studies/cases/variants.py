@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from engines import ENGINES
-from engines.declaration import AT_REST
+from engines.declaration import AT_REST, PASTED
 from engines.factors import (
     AS_BEST,
     BEST,
@@ -54,7 +54,7 @@ def variants(engine: str) -> Iterator[Variant]:
         use.name: Variant(engine=engine, preset=use.name, level=use.title)
         for use in declared.presets
     }
-    for name in [name for name in plain if name not in (*BOTH, AT_REST)]:
+    for name in [name for name in plain if name not in (*BOTH, AT_REST, PASTED)]:
         yield plain[name]
         for help_, settings in declared.preset(name).helped_by.items():
             if settings is not None:

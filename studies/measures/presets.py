@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from engines import ENGINES
-from engines.declaration import AT_REST, RECOMMENDED, Preset
+from engines.declaration import AT_REST, PASTED, RECOMMENDED, Preset
+from engines.factors import BEST
 from studies.kit.say import capital
 from studies.sources.registry import resolve
 
@@ -29,6 +30,7 @@ PRESETS = {
         "with default settings and a floor at rest", "default, floor at rest", "#E69F00", ":"
     ),
     RECOMMENDED: Look("with recommended settings", "recommended", "#56B4E9", "-.", "bottom"),
+    PASTED: Look("with a few lines to paste", "pasted", "#009E73", "--", "bottom"),
     "tuned": Look("with tuned settings", "tuned", "#0072B2", "--", "left"),
     "error-controlled": Look(
         "with error-controlled steps", "error-controlled", "#CC79A7", "-.", "bottom"
@@ -59,8 +61,13 @@ def engine_of(source: str) -> str:
 
 
 def uses_of(engine: str) -> list[Preset]:
-    """Return an engine's presets, without the varied frame of what is documented."""
-    return [use for use in ENGINES[engine].presets if use.name != AT_REST]
+    """Return an engine's presets, without those that are for a floor at rest alone."""
+    return [use for use in ENGINES[engine].presets if use.name not in (AT_REST, PASTED)]
+
+
+def pasted_of(engine: str) -> str:
+    """Return the preset to paste for a free body: the tuned one where that holds one as it is."""
+    return PASTED if PASTED in [use.name for use in ENGINES[engine].presets] else BEST
 
 
 def in_words(preset: str) -> str:

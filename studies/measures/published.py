@@ -9,7 +9,6 @@ import math
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -18,7 +17,6 @@ from engines import ENGINES
 from engines.declaration import Preset
 from studies.cases.paper import sweep_cases
 from studies.measures.costs import joint
-from studies.measures.differences import WELL_CONDITIONED
 from studies.measures.presets import uses_of
 from studies.sources.registry import resolve
 
@@ -55,14 +53,10 @@ LADDER = "precision/work-precision.csv"
 """Errors and times of methods along their steps."""
 PAPER = ("sweep/summary.csv", "presets/summary.csv")
 """The paper's cases, with each preset as it is declared."""
-RANDOM = "steps/random.csv"
-"""Random cases at the settings that keep an error on the other published cases."""
 TARGETS = (0.1, 1e-2, 1e-3, 1e-4)
 """Errors that somebody may want to keep."""
 SETTING = ["engine", "preset", "value"]
 """Columns that tell one setting from another; value is p dt, or an engine's own accuracy."""
-COUNTS = ["random_cases", "random_off", "random_calm_off"]
-"""Columns of `counted`."""
 
 
 def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
@@ -115,29 +109,8 @@ def _of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
     )
 
 
-def options_at(preset: Preset, value: float) -> dict[str, Any]:
-    """Return the options of a scene that set a preset to a value; none for its own step, nan."""
-    if math.isnan(value):
-        return {}
-    knob = preset.accuracy_knob
-    return {"settings": {knob[0]: value}} if knob else {"step": value}
-
-
 def declared_value(preset: Preset) -> float:
     """Return p dt, or the accuracy knob, as a preset is declared; nan for a step in seconds."""
     if preset.accuracy_knob is not None:
         return float(getattr(preset.settings, preset.accuracy_knob[0]))
     return preset.ordinary_step()
-
-
-def counted(known: pd.DataFrame, runs: pd.DataFrame, target: float) -> pd.DataFrame:
-    """Return settings with COUNTS of their random cases: all, off, off though well conditioned.
-
-    A case is off if its error is larger than the target.
-    """
-    off = runs["error"] > target
-    calm = runs["condition"] < WELL_CONDITIONED
-    marked = runs[SETTING].assign(random_cases=1, random_off=off, random_calm_off=off & calm)
-    found = marked.groupby(SETTING, dropna=False)[COUNTS].sum().reset_index()
-    merged = known.merge(found, on=SETTING, how="left")
-    return merged.assign(**{name: merged[name].fillna(0).astype(int) for name in COUNTS})

@@ -91,19 +91,15 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
             weaker="So few random cases that no factor has an upper end.",
         ),
     ),
-    "Error against run time": (Part("precision", "precision"), Part("advice", "advise", quick=())),
+    "Error against run time": (Part("precision", "precision"),),
     "Contact models": (
+        Part("advice", "advise", quick=("--quick", "--engines", "pybullet", "mujoco")),
         Part("contact", "contact"),
         Part(
             *("contact-frames", "contact", "What does each setting cost and buy on frames?"),
             always=("--scene", "frame"),
         ),
         Part("restitution", "restitution", quick=()),
-        Part(
-            *("symptoms", "advise", "Which setting mends what users of an engine see?"),
-            always=("--symptoms",),
-            quick=(),
-        ),
     ),
     "Stiff and extreme cases": (Part("stability", "stability"),),
     "Overturning": (

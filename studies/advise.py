@@ -1,0 +1,338 @@
+"""Which lines to paste so that a body of one's own rocks right, and what they are worth."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from itertools import islice
+from textwrap import fill
+from typing import Annotated
+
+import pandas as pd
+from cyclopts import Parameter
+
+from analytic.block import RigidBlock
+from analytic.motion import SinePulse
+from engines import ENGINES
+from engines.declaration import AT_REST, PASTED
+from engines.factors import DEFAULT
+from engines.registry import OWN
+from engines.run.run import YAW
+from studies.cases.drawn import free_boxes
+from studies.kit.arguments import (
+    Engines,
+    NotNegative,
+    Place,
+    Positive,
+    as_bad_input,
+    refuse_given,
+    refuse_repeats,
+    several_or_none,
+)
+from studies.kit.jobs import Job, Question, Row, ask, summary
+from studies.kit.options import Running
+from studies.kit.say import aligned, as_text, capital, duration, out_of, part
+from studies.kit.scene_options import Height, Width, block_of
+from studies.kit.store import check
+from studies.kit.study import Study, Tables
+from studies.kit.tables import table_in
+from studies.measures import published as known
+from studies.measures.costs import cheapest_kept
+from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
+from studies.measures.presets import pasted_of
+from studies.measures.published import PUBLISHED
+from studies.measures.wrongness import KINDS, counted, in_kinds, wrong_in
+from studies.sources.registry import scene_of
+
+SEED, CASES, FRICTION = 55, {False: 60, True: 10}, 0.8
+"""Of the random boxes: the seed, how many in full and quickly, and the friction."""
+STEPS_S = 1e-3, 2e-3
+"""A user's step [s]; the second where the first is the library's own."""
+BLOCK = RigidBlock(width=0.5, height=1.5)
+"""Of which lines are published."""
+ADVICE, LINES = "advice", "lines"
+NEEDED = tuple(f"advice/{name}.csv" for name in (ADVICE, LINES))
+"""The tables of advice."""
+
+
+def command(
+    *,
+    engines: Annotated[Engines | None, Parameter(name=("--engines", "--engine"))] = None,
+    dt: Positive | None = None,
+    friction: NotNegative = FRICTION,
+    width: Width = BLOCK.width,
+    height: Height = BLOCK.height,
+    error: Annotated[tuple[Positive, ...] | None, several_or_none] = None,
+    out: Place | None = None,
+    quick: bool = False,
+    running: Running = Running(),  # noqa: B008
+) -> int:
+    """Say what to paste so that a free box on a floor at rest rocks right, and what it is worth.
+
+    Of one engine the lines, in the library's words, what they are worth on 60 random boxes, where
+    they fail and where they are from; of several what they are worth. It runs nothing: it reads the
+    published tables. With --out it measures them again, in ten minutes.
+
+    Parameters
+    ----------
+    engines
+        Names of engines, without a preset; by default all.
+    dt
+        Your step [s]; by default the library's own.
+    friction
+        Your coefficient of friction between box and floor.
+    error
+        Instead, the cheapest setting of each preset whose peaks keep these relative errors [-] in
+        the published cases, as every finer step does.
+    out
+        Folder for the tables of a new run; none by default.
+    quick
+        With --out: 10 boxes instead of 60.
+    """
+    asked = engines or tuple(OWN)
+    if out is not None:
+        return STUDY.carry_out(out, jobs(asked, quick), running, engines=asked, quick=quick)
+    refuse_given({"quick": quick or None}, "only with --out")
+    block = block_of(width, height)
+    if error:
+        refuse_repeats("--error", error)
+        check(PUBLISHED, (known.LADDER, *known.PAPER), "the published tables")
+        print(as_text("The cheapest setting:", {"Errors kept": cheapest(asked, error, block)}))
+        return 0
+    check(PUBLISHED, NEEDED, "the published tables")
+    if len(asked) == 1:
+        own = ENGINES[asked[0]].preset(AT_REST).step_s
+        with as_bad_input():
+            print(*screen(asked[0], block, dt or own, friction), sep="\n")
+        return 0
+    advice = table_in(PUBLISHED / "advice", ADVICE)
+    mine = {ADVICE: advice[advice["engine"].isin(asked)]}
+    print(as_text(finding(mine), shown(mine)))
+    print("\nWith one --engine: the lines to paste, in the library's words.")
+    return 0
+
+
+def jobs(engines: Sequence[str], quick: bool) -> list[Job]:
+    """Return the jobs: engine by engine, at its own step and a user's, by default and pasted."""
+    boxes = list(islice(free_boxes(SEED), CASES[quick]))
+    return [
+        Job(
+            labels={"engine": engine, "preset": preset, "dt_s": dt_s, **asdict(box)},
+            case=Question(system=box.block, motion=box.motion),
+            source=f"{engine}:{preset}",
+            options={"friction": FRICTION, "step": dt_s * box.block.p},
+        )
+        for engine in engines
+        for dt_s in steps_of(engine)
+        for preset in (AT_REST, pasted_of(engine))
+        for box in boxes
+    ]
+
+
+def steps_of(engine: str) -> tuple[float, float]:
+    """Return the library's own step and a user's [s]."""
+    own, (usual, other) = ENGINES[engine].preset(AT_REST).step_s, STEPS_S
+    return own, other if own == usual else usual
+
+
+def measure(job: Job) -> Row:
+    """Return the columns of a row, with how far a box slid and turned about the vertical."""
+    response = ask(job)
+    slid, yaw = response.slip_m / job.case.system.width, response.observables.get(YAW, math.nan)
+    return {**summary(response), "slip_widths": slid, "yaw_deg": yaw}
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return the rows beside the exact solution, a line for each setting, and lines to paste."""
+    boxes = with_reference(rows)
+    groups = boxes.groupby(["engine", "dt_s", "preset"], sort=False)
+    advice = pd.DataFrame(
+        [{**dict(zip(groups.keys, key, strict=True)), **_line(group)} for key, group in groups]
+    )
+    lines = [
+        {"engine": engine, "dt_s": dt_s, "literal": line}
+        for engine, dt_s in advice[["engine", "dt_s"]].drop_duplicates().itertuples(index=False)
+        for line in pasted_lines(engine, BLOCK, dt_s, FRICTION)
+    ]
+    return {"boxes": boxes, ADVICE: advice, LINES: pd.DataFrame(lines)}
+
+
+def _line(group: pd.DataFrame) -> Row:
+    sizes, parts = group["error"].abs(), group["difference"].abs()
+    calm, both = sensitivity_of(group) < WELL_CONDITIONED, sizes.notna()
+    return {
+        **{"cases": len(group), **counted(wrong_in(group)), "survivors": int((calm & both).sum())},
+        **{"median_error": sizes[calm].median(), "max_error": sizes[calm].max()},
+        **{"median_difference": parts[calm].median(), "max_difference": parts[calm].max()},
+        **{"ill": int((both & ~calm).sum()), "ill_max_error": sizes[~calm].max()},
+        **{name: group.loc[both, name].max() for name in ("yaw_deg", "slip_widths")},
+        "wall_s": group["wall_s"].mean(),
+    }
+
+
+def pairs(advice: pd.DataFrame) -> Iterator[tuple[str, float, Row, Row]]:
+    """Yield an engine, a step [s], and the lines of its defaults and of what is pasted."""
+    for (engine, dt_s), both in advice.groupby(["engine", "dt_s"], sort=False):
+        before, after = both.to_dict("records")
+        yield str(engine), float(str(dt_s)), before, after
+
+
+def worse(before: Row, after: Row) -> list[str]:
+    """Say by how much pasted lines are no better: in the median, the largest error, outcomes."""
+    columns = {"median_error": "the typical error", "max_error": "the largest error"}
+    said = [
+        f"{words} goes from {part(before[name])} to {part(after[name])}"
+        for name, words in columns.items()
+        if not after[name] < before[name]
+    ]
+    wrong = [sum(line[kind] for kind in KINDS) for line in (before, after)]
+    more = [f"wrong outcomes go from {wrong[0]} to {wrong[1]}"] if wrong[1] > wrong[0] else []
+    return said + more
+
+
+def unadvised(advice: pd.DataFrame) -> dict[str, str]:
+    """Return why a setting is not advised, of each engine where it is not."""
+    found: dict[str, list[str]] = {}
+    for engine, dt_s, before, after in pairs(advice):
+        if words := worse(before, after):
+            found.setdefault(engine, []).append(f"at {dt_s:.3g} s {' and '.join(words)}")
+    return {engine: "; ".join(words) for engine, words in found.items()}
+
+
+def finding(tables: Tables) -> str:
+    """Say for how many engines pasted lines lower the errors, and from what to what."""
+    advice = tables[ADVICE]
+    engines, bad = advice["engine"].unique(), unadvised(advice)
+    ends = [[each["median_error"] for each in (old, new)] for *_, old, new in pairs(advice)]
+    before, after = pd.DataFrame(ends).median()
+    return (
+        f"A few pasted lines lower the typical and the largest error of a free box with "
+        f"{out_of(len(engines) - len(bad), len(engines))} engines at both steps, in the median "
+        f"from {part(before)} to {part(after)}."
+    )
+
+
+def shown(tables: Tables) -> Tables:
+    """Return what pasted lines are worth, and which are not advised."""
+    columns = ["engine", "dt_s", "preset", *KINDS, "median_error", "max_error", "ill_max_error"]
+    bad = unadvised(tables[ADVICE])
+    return {
+        "Random boxes at a friction of 0.8; ill_max_error where S ≥ 10": tables[ADVICE][
+            [*columns, "yaw_deg", "slip_widths", "wall_s"]
+        ],
+        "Not advised": pd.DataFrame({"engine": [*bad], "why": [*bad.values()]}),
+    }
+
+
+def pasted_lines(engine: str, block: RigidBlock, dt_s: float, friction: float) -> list[str]:
+    """Return what is set for pasting and not by default, in the library's words, recorded."""
+    declared, found = ENGINES[engine], list[list[str]]()
+    if declared.script is None or not declared.installed:
+        return [f"{declared.title} writes its lines where it is installed"]
+    pulse = SinePulse(amplitude=1.0, omega=1.0)
+    for preset in (AT_REST, pasted_of(engine)):
+        options = {"friction": friction, "step": dt_s * block.p}
+        use = declared.use(scene_of(block, pulse, preset, **options))
+        text = "\n".join(declared.script(use.scene, use.settings, use.dt_s).settings)
+        found.append(re.sub(r"\n +", " ", text).split("\n"))
+    return [line for line in found[1] if line not in found[0]]
+
+
+def screen(engine: str, block: RigidBlock, dt_s: float, friction: float) -> Iterator[str]:
+    """Yield a screen about an engine: lines to paste, their worth, where they fail, sources."""
+    declared, use = ENGINES[engine], ENGINES[engine].preset(pasted_of(engine))
+    advice = table_in(PUBLISHED / "advice", ADVICE)
+    advice = advice[advice["engine"] == engine]
+    where = f"steps of {dt_s:.4g} s, friction {friction:g}"
+    yield f"YOUR FLOOR RESTS: {declared.title} ({engine}:{use.name}), {where}. Paste:"
+    for line in pasted_lines(engine, block, dt_s, friction):
+        yield fill(line, 79, initial_indent="  ", subsequent_indent="      ")
+    if advice.empty:
+        yield "No published table says what that is worth."
+    else:
+        yield f"{advice['cases'].max()} random boxes at a friction of {FRICTION:g}:"
+        yield worth(advice)
+        bad = unadvised(advice).get(engine)
+        why = f"NOT ADVISED: {bad}." if bad else ""
+        yield from _filled("Fails", f"{why} {fails(advice)}".strip())
+    sources = [f"{it.setting}: {it.value} ({it.where})" for it in use.documented]
+    yield from _filled("Sources", "; ".join(sources) or "measured here, `rocking contact`")
+    yield from _filled("YOUR FLOOR MOVES", moving(engine))
+
+
+def _filled(head: str, text: str) -> list[str]:
+    return [fill(f"{head}: {text}", 79, subsequent_indent="  ")] if text else []
+
+
+def worth(advice: pd.DataFrame) -> str:
+    """Return a table of errors before and after."""
+    heads = ["  step", "settings", "typical", "worst", "wrong", "S ≥ 10", "turns", "a case"]
+    cells = [
+        [
+            f"  {line['dt_s']:.3g} s",
+            PASTED if line["preset"] != AT_REST else DEFAULT,
+            *(part(line[name]) for name in ("median_error", "max_error")),
+            str(sum(line[kind] for kind in KINDS) or "-"),
+            part(line["ill_max_error"]),
+            "-" if math.isnan(line["yaw_deg"]) else f"{line['yaw_deg']:.1g}°",
+            duration(line["wall_s"]),
+        ]
+        for line in advice.to_dict("records")
+    ]
+    return aligned([heads, *cells], [False, False, *[True] * 6])
+
+
+def fails(advice: pd.DataFrame) -> str:
+    """Say where pasted lines still fail."""
+    lines = advice[advice["preset"] != AT_REST]
+    wrong = lines[list(KINDS)].sum()
+    said = f"{in_kinds(wrong)} of {lines['cases'].sum()}" if wrong.sum() else "no wrong outcome"
+    slides = f"it slides by up to {part(lines['slip_widths'].max())} of B"
+    return capital(f"{said}; {slides}; of {lines['ill'].max()} boxes with S ≥ 10 see the table.")
+
+
+def moving(engine: str) -> str:
+    """Say how much of the defaults' error is the lag of a floor that moves."""
+    table = table_in(PUBLISHED / "presets", "summary")
+    table = table[table["figure"] == "all"].set_index("source")
+    names = [f"{engine}:{preset}" for preset in (DEFAULT, AT_REST)]
+    if not set(names) <= set(table.index):
+        return ""
+    (moves, rests), cases = table.loc[names, "median_error"], table.loc[names[0], "cases"]
+    less = f"{part(1.0 - rests / moves)} of it is the floor" if rests < moves else "none of it is"
+    return (
+        f"the defaults err by {part(moves)} in the median of {cases} cases of the paper, on a "
+        f"floor at rest by {part(rests)}: {less}. Let the floor rest and add -a to gravity."
+    )
+
+
+def cheapest(engines: Sequence[str], errors: Sequence[float], block: RigidBlock) -> pd.DataFrame:
+    """Return for each error, engine and preset the cheapest published setting that keeps it."""
+    rows: list[Row] = []
+    for error in errors:
+        settings = known.settings(PUBLISHED, engines)
+        for (engine, name), mine in settings.groupby(known.SETTING[:2], sort=False):
+            preset = ENGINES[str(engine)].preset(str(name))
+            if (best := cheapest_kept(mine, mine["max_error"] <= error)) is None:
+                continue
+            own = math.nan if preset.accuracy_knob else preset.step_s
+            value = float(best["value"])
+            dt_s = own if preset.accuracy_knob or math.isnan(value) else value / block.p
+            row = {"target": error, "engine": engine, "preset": name, "value": value, "dt_s": dt_s}
+            rows.append(row | {n: best[n] for n in ("wall_s", "runs", "cases", "max_error")})
+    return pd.DataFrame(rows)
+
+
+STUDY = Study(
+    name="advise",
+    question="What to paste so that a free box on a floor at rest rocks right?",
+    help="Random boxes of six degrees of freedom, at each library's own step and at 1 ms.",
+    jobs=lambda *_: (),
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    texts=("literal",),
+)
