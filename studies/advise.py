@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from itertools import islice
+from pathlib import Path
 from textwrap import fill
-from typing import Annotated
+from typing import Annotated, Any, TypeAlias
 
 import pandas as pd
 from cyclopts import Parameter
@@ -33,7 +34,7 @@ from studies.kit.arguments import (
 )
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.options import Running
-from studies.kit.say import aligned, as_text, capital, duration, out_of, part
+from studies.kit.say import aligned, as_text, duration, out_of, part
 from studies.kit.scene_options import Height, Width, block_of
 from studies.kit.store import check
 from studies.kit.study import Study, Tables
@@ -46,6 +47,8 @@ from studies.measures.published import PUBLISHED
 from studies.measures.wrongness import KINDS, counted, in_kinds, wrong_in
 from studies.sources.registry import scene_of
 
+Line: TypeAlias = "Mapping[Any, Any]"
+"""A line of a table."""
 SEED, CASES, FRICTION = 55, {False: 60, True: 10}, 0.8
 """Of the random boxes: the seed, how many in full and quickly, and the friction."""
 STEPS_S = 1e-3, 2e-3
@@ -99,7 +102,9 @@ def command(
     if error:
         refuse_repeats("--error", error)
         check(PUBLISHED, (known.LADDER, *known.PAPER), "the published tables")
-        print(as_text("The cheapest setting:", {"Errors kept": cheapest(asked, error, block)}))
+        found = cheapest(PUBLISHED, asked, error, block)
+        title = "The cheapest setting that keeps each error, with every finer step (value: p dt, or"
+        print(as_text("", {f"{title}\nan accuracy; dt_s for your block)": found}).strip())
         return 0
     check(PUBLISHED, NEEDED, "the published tables")
     if len(asked) == 1:
@@ -172,14 +177,14 @@ def _line(group: pd.DataFrame) -> Row:
     }
 
 
-def pairs(advice: pd.DataFrame) -> Iterator[tuple[str, float, Row, Row]]:
+def pairs(advice: pd.DataFrame) -> Iterator[tuple[str, float, Line, Line]]:
     """Yield an engine, a step [s], and the lines of its defaults and of what is pasted."""
-    for (engine, dt_s), both in advice.groupby(["engine", "dt_s"], sort=False):
-        before, after = both.to_dict("records")
-        yield str(engine), float(str(dt_s)), before, after
+    lines = advice.to_dict("records")
+    for before, after in zip(lines[::2], lines[1::2], strict=True):
+        yield str(before["engine"]), float(before["dt_s"]), before, after
 
 
-def worse(before: Row, after: Row) -> list[str]:
+def worse(before: Line, after: Line) -> list[str]:
     """Say by how much pasted lines are no better: in the median, the largest error, outcomes."""
     columns = {"median_error": "the typical error", "max_error": "the largest error"}
     said = [
@@ -242,11 +247,11 @@ def pasted_lines(engine: str, block: RigidBlock, dt_s: float, friction: float) -
 
 def screen(engine: str, block: RigidBlock, dt_s: float, friction: float) -> Iterator[str]:
     """Yield a screen about an engine: lines to paste, their worth, where they fail, sources."""
-    declared, use = ENGINES[engine], ENGINES[engine].preset(pasted_of(engine))
+    use = ENGINES[engine].preset(pasted_of(engine))
     advice = table_in(PUBLISHED / "advice", ADVICE)
     advice = advice[advice["engine"] == engine]
     where = f"steps of {dt_s:.4g} s, friction {friction:g}"
-    yield f"YOUR FLOOR RESTS: {declared.title} ({engine}:{use.name}), {where}. Paste:"
+    yield from _filled("YOUR FLOOR RESTS", f"{engine}:{use.name}, {where}. Paste:")
     for line in pasted_lines(engine, block, dt_s, friction):
         yield fill(line, 79, initial_indent="  ", subsequent_indent="      ")
     if advice.empty:
@@ -255,8 +260,8 @@ def screen(engine: str, block: RigidBlock, dt_s: float, friction: float) -> Iter
         yield f"{advice['cases'].max()} random boxes at a friction of {FRICTION:g}:"
         yield worth(advice)
         bad = unadvised(advice).get(engine)
-        why = f"NOT ADVISED: {bad}." if bad else ""
-        yield from _filled("Fails", f"{why} {fails(advice)}".strip())
+        yield from _filled("NOT ADVISED", bad or "")
+        yield from _filled("Fails", fails(advice))
     sources = [f"{it.setting}: {it.value} ({it.where})" for it in use.documented]
     yield from _filled("Sources", "; ".join(sources) or "measured here, `rocking contact`")
     yield from _filled("YOUR FLOOR MOVES", moving(engine))
@@ -276,7 +281,7 @@ def worth(advice: pd.DataFrame) -> str:
             *(part(line[name]) for name in ("median_error", "max_error")),
             str(sum(line[kind] for kind in KINDS) or "-"),
             part(line["ill_max_error"]),
-            "-" if math.isnan(line["yaw_deg"]) else f"{line['yaw_deg']:.1g}°",
+            "-" if math.isnan(line["yaw_deg"]) else f"{line['yaw_deg']:.2g}°",
             duration(line["wall_s"]),
         ]
         for line in advice.to_dict("records")
@@ -287,34 +292,34 @@ def worth(advice: pd.DataFrame) -> str:
 def fails(advice: pd.DataFrame) -> str:
     """Say where pasted lines still fail."""
     lines = advice[advice["preset"] != AT_REST]
-    wrong = lines[list(KINDS)].sum()
-    said = f"{in_kinds(wrong)} of {lines['cases'].sum()}" if wrong.sum() else "no wrong outcome"
-    slides = f"it slides by up to {part(lines['slip_widths'].max())} of B"
-    return capital(f"{said}; {slides}; of {lines['ill'].max()} boxes with S ≥ 10 see the table.")
+    slid = f"the pivot slides by up to {part(lines['slip_widths'].max())} of B"
+    plane = "; the library is planar" if lines["yaw_deg"].isna().all() else ""
+    return f"{in_kinds(lines[list(KINDS)].sum())}; {slid}{plane}"
 
 
 def moving(engine: str) -> str:
-    """Say how much of the defaults' error is the lag of a floor that moves."""
+    """Say by how much the defaults err on a floor that moves, and on one at rest."""
     table = table_in(PUBLISHED / "presets", "summary")
     table = table[table["figure"] == "all"].set_index("source")
     names = [f"{engine}:{preset}" for preset in (DEFAULT, AT_REST)]
     if not set(names) <= set(table.index):
         return ""
-    (moves, rests), cases = table.loc[names, "median_error"], table.loc[names[0], "cases"]
-    less = f"{part(1.0 - rests / moves)} of it is the floor" if rests < moves else "none of it is"
+    (moves, rests), cases = table.loc[names, "median_error"], table["cases"].max()
     return (
-        f"the defaults err by {part(moves)} in the median of {cases} cases of the paper, on a "
-        f"floor at rest by {part(rests)}: {less}. Let the floor rest and add -a to gravity."
+        f"the defaults err by {part(moves)} in the median of {cases:.0f} cases of the paper, "
+        f"on a floor at rest by {part(rests)}. Let the floor rest, and add -a to gravity."
     )
 
 
-def cheapest(engines: Sequence[str], errors: Sequence[float], block: RigidBlock) -> pd.DataFrame:
+def cheapest(
+    published: Path, engines: Sequence[str], errors: Sequence[float], block: RigidBlock = BLOCK
+) -> pd.DataFrame:
     """Return for each error, engine and preset the cheapest published setting that keeps it."""
     rows: list[Row] = []
     for error in errors:
-        settings = known.settings(PUBLISHED, engines)
-        for (engine, name), mine in settings.groupby(known.SETTING[:2], sort=False):
-            preset = ENGINES[str(engine)].preset(str(name))
+        for _, mine in known.settings(published, engines).groupby(known.SETTING[:2], sort=False):
+            engine, name, *_ = mine.iloc[0]
+            preset = ENGINES[engine].preset(name)
             if (best := cheapest_kept(mine, mine["max_error"] <= error)) is None:
                 continue
             own = math.nan if preset.accuracy_knob else preset.step_s

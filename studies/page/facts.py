@@ -14,12 +14,16 @@ from engines import ENGINES
 from engines.declaration import AT_REST, REST_S, Help, Stepping
 from engines.factors import BEST, DEFAULT, LEFT_OUT, OWN_STEP, OWN_STEPS
 from engines.registry import OWN
+from engines.run.export import broken
+from studies.advise import cheapest, pairs
+from studies.advise import unadvised as not_advised
 from studies.cases.variants import AT_ONCE
 from studies.kit.identity import NOT_INSTALLED
-from studies.kit.say import capital, duration, listed, part
+from studies.kit.say import capital, duration, listed, part, signed
 from studies.kit.store import engines_of, provenance_of, whole_runs
 from studies.kit.tables import table_in
 from studies.measures.costs import cost_text
+from studies.measures.published import TARGETS
 from studies.measures.wrongness import KINDS
 from studies.sweep import over_all, preset_table
 
@@ -27,6 +31,8 @@ Line: TypeAlias = "Mapping[Any, Any] | pd.Series[Any]"
 """A line of a table."""
 Table: TypeAlias = tuple[list[str], list[list[str]]]
 """Heads, and the cells of each row."""
+CASE = ("figure", "aspect", "width_m", "omega_over_p")
+"""Columns that tell the paper's cases apart."""
 TITLES = {name: ENGINES[name].title for name in OWN}
 
 
@@ -99,22 +105,67 @@ def _cell(head: str, value: Any) -> str:
 
 
 def advised(published: Path) -> list[list[str]]:
-    """Return the cheapest advice for each error, a row for each error."""
+    """Return the cheapest published setting for each error, a row for each error."""
     rows = []
-    for target, group in table_in(published / "advice", "advice").groupby("target", sort=False):
-        best = group[group["message"] == ""].nsmallest(1, "wall_s")
-        cells = ["none", "–", "–"]
-        for line in best.to_dict("records"):
-            fixed = ENGINES[line["engine"]].preset(line["preset"]).stepping is Stepping.FIXED
-            how = "p dt =" if fixed else "accuracy"
-            known = f"{line['random_off']:.0f} of {line['random_cases']:.0f}"
-            cells = [
-                f"`{line['engine']}:{line['preset']}`, {how} {line['value']}",
-                cost_text(line["wall_s"], line["runs"]),
-                known if line["random_cases"] else "–",
-            ]
-        rows.append([f"{100.0 * float(str(target)):g} %", *cells])
+    for target, group in cheapest(published, [*TITLES], TARGETS).groupby("target", sort=False):
+        line = group.nsmallest(1, "wall_s").iloc[0]
+        fixed = ENGINES[line["engine"]].preset(line["preset"]).stepping is Stepping.FIXED
+        how = f"{'p dt =' if fixed else 'accuracy'} {line['value']}"
+        source = f"`{line['engine']}:{line['preset']}`, {how}"
+        cost = cost_text(line["wall_s"], line["runs"])
+        rows.append([f"{100.0 * float(str(target)):g} %", source, cost])
     return rows
+
+
+def pasted(published: Path) -> list[dict[str, Any]]:
+    """Return what pasted lines are worth, for each engine and step, and the lines.
+
+    Cells are of a step with the place of its lines, errors, wrong outcomes and run time, by default
+    and pasted; own says whether the step is the library's own.
+    """
+    known = table_in(published / "advice", "lines", "literal")
+    found: list[dict[str, Any]] = []
+    for engine, dt_s, *both in pairs(table_in(published / "advice", "advice")):
+        mine = known[(known["engine"] == engine) & (known["dt_s"] == dt_s)]
+        place, title = f"{engine}-{1e6 * dt_s:.0f}", f"{TITLES[engine]}, {duration(dt_s)}"
+        cells = [
+            (part(line["median_error"]), part(line["max_error"]), part(line["median_difference"]),
+             str(sum(line[kind] for kind in KINDS)), part(line["ill_max_error"]),
+             duration(line["wall_s"])) for line in both
+        ]  # fmt: skip
+        found.append(
+            {
+                **{"engine": engine, "place": place, "title": title, "boxes": both[0]["cases"]},
+                "own": all(each["engine"] != engine for each in found),
+                "cells": [f"[{title}](#{place})", *map(" → ".join, zip(*cells, strict=True))],
+                "text": "\n".join(row for line in mine["literal"] for row in broken(line)),
+            }
+        )
+    return found
+
+
+def unadvised(published: Path) -> dict[str, str]:
+    """Return why pasted lines are not advised, of each engine where they are not."""
+    return not_advised(table_in(published / "advice", "advice"))
+
+
+def lags(published: Path) -> list[list[str]]:
+    """Return how much of the defaults' error is a moving floor's, a row for each engine.
+
+    Of the paper's cases that survive in both and exactly: the median error on a moving floor, on
+    one at rest, and the median difference of the two peaks over the exact one.
+    """
+    rows, case = table_in(published / "presets", "sweep"), [*CASE]
+    rows = rows[(rows["outcome"] == "rocked") & (rows["peak_ratio"] > 0.0)]
+    peaks = rows.pivot(index=case, columns="source", values="peak_ratio")
+    cells = []
+    for name, title in TITLES.items():
+        both = [f"{name}:{preset}" for preset in (DEFAULT, AT_REST)]
+        if {*both} <= {*peaks}:
+            errors = peaks[both].div(peaks["exact"], axis=0).dropna() - 1.0
+            apart = (errors[both[0]] - errors[both[1]]).abs().median()
+            cells.append([title, *map(signed, errors.median()), part(apart)])
+    return cells
 
 
 def made(published: Path) -> dict[str, str]:
