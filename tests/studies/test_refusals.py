@@ -128,7 +128,7 @@ scenes --out DIR --sources housner | housner
 advise --error 0 | --error is '0'; it must be a positive finite number
 advise --error 0.1 0.1 | --error names 0.1 twice
 advise --engine havok | --engines is 'havok'; it must be among
-advise --symptoms --error 0.1 | --error is 0.1; it may be given only without --sym
+advise --engine mujoco --quick | --quick is True; it may be given only with --out
 contact --out DIR --quickly | --quickly
 restitution --out DIR --engines moreau | moreau | pybullet, mujoco
 restitution --out DIR --engines drake | drake | no coefficient
