@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
-from textwrap import fill
+from textwrap import wrap
 from typing import Annotated, Any, TypeAlias
 
 import pandas as pd
@@ -55,6 +55,8 @@ STEPS_S = 1e-3, 2e-3
 """A user's step [s]; the second where the first is the library's own."""
 BLOCK = RigidBlock(width=0.5, height=1.5)
 """Of which lines are published."""
+ROWS = 24
+"""Of a screen."""
 ADVICE, LINES = "advice", "lines"
 NEEDED = tuple(f"advice/{name}.csv" for name in (ADVICE, LINES))
 """The tables of advice."""
@@ -245,30 +247,37 @@ def pasted_lines(engine: str, block: RigidBlock, dt_s: float, friction: float) -
     return [line for line in found[1] if line not in found[0]]
 
 
-def screen(engine: str, block: RigidBlock, dt_s: float, friction: float) -> Iterator[str]:
-    """Yield a screen about an engine: lines to paste, their worth, where they fail, sources."""
+def screen(engine: str, block: RigidBlock, dt_s: float, friction: float) -> list[str]:
+    """Return a screen about an engine: lines to paste, their worth, where they fail, sources."""
     use = ENGINES[engine].preset(pasted_of(engine))
     advice = table_in(PUBLISHED / "advice", ADVICE)
     advice = advice[advice["engine"] == engine]
-    where = f"steps of {dt_s:.4g} s, friction {friction:g}"
-    yield from _filled("YOUR FLOOR RESTS", f"{engine}:{use.name}, {where}. Paste:")
-    for line in pasted_lines(engine, block, dt_s, friction):
-        yield fill(line, 79, initial_indent="  ", subsequent_indent="      ")
-    if advice.empty:
-        yield "No published table says what that is worth."
-    else:
-        yield f"{advice['cases'].max()} random boxes at a friction of {FRICTION:g}:"
-        yield worth(advice)
-        bad = unadvised(advice).get(engine)
-        yield from _filled("NOT ADVISED", bad or "")
-        yield from _filled("Fails", fails(advice))
+    below = ["No published table says what that is worth."]
+    if len(advice):
+        below = [f"{advice['cases'].max()} random boxes at a friction of {FRICTION:g}:"]
+        below += worth(advice).splitlines()
+        below += _filled("NOT ADVISED", unadvised(advice).get(engine, ""))
+        below += _filled("Fails", fails(advice))
     sources = [f"{it.setting}: {it.value} ({it.where})" for it in use.documented]
-    yield from _filled("Sources", "; ".join(sources) or "measured here, `rocking contact`")
-    yield from _filled("YOUR FLOOR MOVES", moving(engine))
+    below += _filled("Sources", "; ".join(sources) or "measured here, `rocking contact`")
+    below += _filled("YOUR FLOOR MOVES", moving(engine))
+    where = f"steps of {dt_s:.4g} s, friction {friction:g}"
+    lines = [
+        f"  {row}"
+        for line in pasted_lines(engine, block, dt_s, friction)
+        for row in wrap(line, 77, subsequent_indent="    ")
+    ]
+    room = ROWS - 1 - len(below)
+    if len(lines) > room:
+        more = (
+            f"  and {len(lines) - room + 1} more rows: rocking export --engine {engine}:{use.name}"
+        )
+        lines = [*lines[: room - 1], more]
+    return [*_filled("YOUR FLOOR RESTS", f"{engine}:{use.name}, {where}. Paste:"), *lines, *below]
 
 
 def _filled(head: str, text: str) -> list[str]:
-    return [fill(f"{head}: {text}", 79, subsequent_indent="  ")] if text else []
+    return wrap(f"{head}: {text}", 79, subsequent_indent="  ") if text else []
 
 
 def worth(advice: pd.DataFrame) -> str:
