@@ -69,7 +69,7 @@ def command(
     friction: NotNegative = FRICTION,
     width: Width = BLOCK.width,
     height: Height = BLOCK.height,
-    error: Annotated[tuple[Positive, ...] | None, several_or_none] = None,
+    error: Annotated[tuple[Positive, ...], several_or_none] = (),
     out: Place | None = None,
     quick: bool = False,
     running: Running = Running(),  # noqa: B008
