@@ -1,6 +1,7 @@
 """MuJoCo: its settings, and how a scene is built, set, read back and stepped."""
 
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
@@ -430,7 +431,7 @@ def begin_contact(scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> C
     )
 
 
-MODEL, SAID = "block.xml", ("<option", "<geom", "<pair", "<weld")
+MODEL, SAID = "block.xml", ("<option", "<default", "<geom", "<pair", "<weld")
 """File of a script's model, beside it, and elements of it that a preset sets."""
 
 
@@ -459,7 +460,8 @@ def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
         pose = [f"theta = 2.0 * {half}", "rate = data.qvel[6 * number + 4]"]
     # the joint of a welded base is the last, a free one
     under = f" - {'data.qpos[-7]' if welded else 'base_x'}" * (scene.frame == "world")
-    lines = map(str.strip, model.splitlines())
+    whole = re.sub(r"(<default>)\s+(<.*>)\s+(</default>)", r"\1\2\3", model)  # one line of both
+    lines = map(str.strip, whole.splitlines())
     return Script(
         imports=("import mujoco",),
         settings=tuple(dict.fromkeys(line for line in lines if line.startswith(SAID))),

@@ -19,7 +19,7 @@ from studies.measures.published import PUBLISHED, TARGETS, settings
 CORE = [name for name, engine in ENGINES.items() if engine.core]
 HERE = [name for name in OWN if ENGINES[name].installed]
 QUOTED = {
-    "mujoco": ('solref="-2500.0 -500.0"', 'solimp="0.9999 0.9999 0.001"'),
+    "mujoco": ('<default><geom solref="-2500.0 -500.0"', 'solimp="0.9999 0.9999 0.001"'),
     "pybullet": (
         "contactBreakingThreshold=0.001",
         "numSolverIterations=100",
