@@ -441,6 +441,7 @@ def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
     s, root, welded = world.settings, ElementTree.fromstring(world.xml), world.held.welded
     ElementTree.indent(root)
     model = ElementTree.tostring(root, encoding="unicode") + "\n"
+    model = re.sub(r"(<default>)\s+(<.*>)\s+(</default>)", r"\1\2\3", model)  # a line to paste
     build = [f'model = mujoco.MjModel.from_xml_path(str(HERE / "{MODEL}"))']
     build.append("data = mujoco.MjData(model)")
     if not scene.begins_at_rest:
@@ -460,8 +461,7 @@ def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
         pose = [f"theta = 2.0 * {half}", "rate = data.qvel[6 * number + 4]"]
     # the joint of a welded base is the last, a free one
     under = f" - {'data.qpos[-7]' if welded else 'base_x'}" * (scene.frame == "world")
-    whole = re.sub(r"(<default>)\s+(<.*>)\s+(</default>)", r"\1\2\3", model)  # one line of both
-    lines = map(str.strip, whole.splitlines())
+    lines = map(str.strip, model.splitlines())
     return Script(
         imports=("import mujoco",),
         settings=tuple(dict.fromkeys(line for line in lines if line.startswith(SAID))),
