@@ -7,17 +7,18 @@ exact one, `drawing` draws it, `page` shows all.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
     from analytic.motion import FloatArray, Motion
     from analytic.response import Response
     from engines.scene import System
 
-__all__ = ["respond", "side_by_side"]
+__all__ = ["figure", "plot", "respond", "side_by_side"]
 
 
 def respond(
@@ -28,6 +29,7 @@ def respond(
     start: tuple[float, float] = (0.0, 0.0),
     duration: float | None = None,
     times: FloatArray | None = None,
+    history: bool = False,
     **options: Any,
 ) -> Response:
     """Ask any source, by its name, for the response of a block to a base motion.
@@ -49,6 +51,8 @@ def respond(
     times : array, optional
         Ground times [s] at which `Response.history` is sampled. Without a duration, "exact" and the
         other models go on to the last of them, and who steps as far as is needed to decide.
+    history : bool, optional
+        Keep a history without naming times: 1001 over the duration, by default the motion and 8/p.
     **options
         Passed on to the source: `step` of the solvers, any setting of an engine's `Scene`.
 
@@ -65,15 +69,70 @@ def respond(
     >>> respond("exact", block, pulse).outcome.value
     'rocked'
     """
+    import numpy as np
+
     from analytic.motion import Still
+    from engines.scene import free_rocking_window
     from studies.sources.registry import resolve
 
     motion = Still() if motion is None else motion
     if tuple(start) != (0.0, 0.0):
         options["start"] = start
+    if history and times is None:
+        duration = free_rocking_window(block, motion) if duration is None else duration
+        times = np.linspace(0.0, duration, 1001)
     asked = resolve(source)
     asked.check(block, motion, duration=duration, times=times, **options)
     return asked.call(block, motion, duration=duration, times=times, **options)
+
+
+def plot(responses: Response | Sequence[Response] | Mapping[str, Response]) -> Figure:
+    """Draw the histories of one response or several, perhaps by their names.
+
+    The figure shows itself in a notebook; `savefig` writes it. ValueError without a history.
+
+    Examples
+    --------
+    >>> from analytic import RigidBlock, SinePulse
+    >>> block, pulse = RigidBlock(width=0.5, height=1.5), SinePulse.in_g(0.4, omega=6.2832)
+    >>> found = {name: respond(name, block, pulse, history=True) for name in ("exact", "housner")}
+    >>> len(plot(found).axes)
+    1
+    """
+    from analytic.response import Response
+    from studies.drawing.figures import draw_responses
+
+    if isinstance(responses, Mapping):
+        return draw_responses(responses)
+    each = [responses] if isinstance(responses, Response) else responses
+    return draw_responses({f"response {n}": one for n, one in enumerate(each, start=1)})
+
+
+def figure(number: int, sources: Sequence[str] = ("exact", "housner", "modified")) -> Figure:
+    """Draw a figure of the paper, 2 or 4 to 9, with the lines of some sources; see `plot`.
+
+    Figure 2 compares two solvers, "rk4" and "average-acceleration".
+
+    Examples
+    --------
+    >>> figure(5).get_suptitle()
+    'Figure 5: full-sine pulse'
+    """
+    import pandas as pd
+
+    from studies import histories, sweep
+    from studies.drawing.figures import shown_by_itself
+    from studies.kit.run import run
+
+    options: Any
+    if number in (2, 4, 5):
+        study, options = histories.STUDY, histories.Options(figure=(number,), sources=(*sources,))
+    elif number in (6, 7, 8, 9):
+        study, options = sweep.STUDY, sweep.Options(figure=(number,))
+    else:
+        raise ValueError(f"figure is {number!r}; it must be one of 2, 4, 5, 6, 7, 8, 9")
+    rows = pd.DataFrame(run(study.jobs((*sources,), False, options), study.measure))
+    return shown_by_itself(study.figures(study.tabulate(rows))[f"figure-{number}"])
 
 
 def side_by_side(

@@ -1,6 +1,8 @@
 """Time histories over each other."""
 
+import io
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
@@ -8,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from analytic.response import Outcome, Response
 from studies.drawing.facets import key, sheet
 from studies.drawing.styles import LOWEST, full_name, line_of, style_of
 
@@ -93,3 +96,30 @@ def _draw_errors(axes: Axes, panel: pd.DataFrame) -> None:
         axes.plot(worst.index, worst.clip(lower=LOWEST), line_of(source), color=colour)
     axes.set(yscale="log", ylabel="distance from\nexact  [θcr]", xlim=(0.0, found.index.max()))
     axes.grid(alpha=0.25)
+
+
+def draw_responses(responses: Mapping[str, Response]) -> Figure:
+    """Draw the histories of named responses over each other; ValueError where one has none."""
+    drawing, (axes,) = sheet((8.0, 4.0))
+    for name, response in responses.items():
+        if (history := response.history) is None:
+            words = "ask for one by respond(..., history=True) or simulate(..., times=...)"
+            raise ValueError(f"{name} has no history; {words}")
+        axes.plot(history.time, history.theta, label=f"{name}: {response.outcome.value}")
+    slid = any(response.outcome is Outcome.SLID for response in responses.values())
+    axes.set(xlabel="time  t  [s]", ylabel="place  x  [m]" if slid else "rotation  θ  [rad]")
+    axes.grid(alpha=0.25)
+    axes.legend()
+    return shown_by_itself(drawing)
+
+
+def shown_by_itself(drawing: Figure) -> Figure:
+    """Return a figure that a notebook shows where it is the value of a cell."""
+
+    def png() -> bytes:
+        stream = io.BytesIO()
+        drawing.savefig(stream, format="png")
+        return stream.getvalue()
+
+    drawing._repr_png_ = png  # type: ignore[attr-defined]
+    return drawing

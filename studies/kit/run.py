@@ -6,6 +6,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from math import tan
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,8 @@ from studies.kit.workers import Lost, answers, deferring
 
 FEW = 32
 """Jobs up to which to interpret takes less time than to load what is compiled."""
+TELL_S = 20.0
+"""Time between two lines that say how far a run has come where no terminal shows a bar [s]."""
 LABELS = ["name", "record", "scale", "figure", "panel", "case", "aspect", "width_m", "omega_over_p"]
 """Columns that name a failed case."""
 
@@ -159,7 +162,11 @@ def run(
         _going_on(store, done, len(jobs)),
         tqdm(total=len(jobs), initial=len(jobs) - len(left), disable=None, unit="case") as bar,
     ):
+        told, lines = monotonic(), not sys.stderr.isatty()  # a log has no place for a bar
         for number, row in place([jobs[number] for number in left], measure):
+            if lines and monotonic() - told > TELL_S:
+                told = monotonic()
+                say(f"{len(done)} of {len(jobs)} cases")
             key = keys[left[number]]
             done[key] = {**labels[left[number]], **row}
             store.add(key, done[key], makers[jobs[left[number]].source])
