@@ -85,13 +85,14 @@ Header = Sequence[tuple[int, str]]
 
 
 class Sampled(NamedTuple):
-    """What a file holds: time between samples [s], ground acceleration [m/s2]."""
+    """What a file holds: time between samples [s], ground acceleration [m/s2], its unit there."""
 
     dt: float
+    unit: str
     samples: FloatArray
 
 
-def read(path: Path, units: str | None, dt: float | None) -> Sampled:
+def read(path: Path, units: str | None, dt: float | None, insist: bool = True) -> Sampled:
     """Read a file; `analytic.Record.read` says which, and when it raises ValueError."""
     if units is not None and units not in UNITS:
         raise ValueError(f"units must be among {', '.join(UNITS)}, not {units!r}")
@@ -109,8 +110,10 @@ def read(path: Path, units: str | None, dt: float | None) -> Sampled:
             )
     header, rows = _split(lines)
     found = found or _column(header, rows, units, dt) or _table(header, rows, units)
-    if dt is not None and found.dt != dt:
+    if insist and dt is not None and found.dt != dt:
         raise ValueError(f"it states a step of {found.dt:g} s; dt must not be {dt:g}")
+    if insist and units is not None and UNITS[units] != UNITS[found.unit]:
+        raise ValueError(f"it states {found.unit}; units must not be {units}")
     return found
 
 
@@ -138,7 +141,7 @@ def _asc(lines: Sequence[str], units: str | None) -> Sampled | None:
     rows = enumerate(map(str.strip, lines[end:]), start=end + 1)
     samples = [_number(row, at) for at, row in rows if row]
     unit = [said[key] for key in said if key == "UNITS"]
-    return Sampled(dt, _converted(samples, unit, units, count))
+    return Sampled(dt, *_converted(samples, unit, units, count))
 
 
 def _at2(lines: Sequence[str], units: str | None) -> Sampled | None:
@@ -171,7 +174,7 @@ def _at2(lines: Sequence[str], units: str | None) -> Sampled | None:
     _check_quantity(header)
     rows = enumerate(lines[end : last if closed else last + 1], start=end + 1)
     samples = [_number(word, at) for at, row in rows for word in row.split()]
-    return Sampled(min(steps), _converted(samples, header, units, *counts))
+    return Sampled(min(steps), *_converted(samples, header, units, *counts))
 
 
 def _column(header: Header, rows: Header, units: str | None, dt: float | None) -> Sampled | None:
@@ -185,11 +188,20 @@ def _column(header: Header, rows: Header, units: str | None, dt: float | None) -
         return None
     elif dt is None and {*widths} == {1}:
         raise ValueError('it has one column; dt, or a line "npts dt" above, must say a step')
-    elif dt is None:
+    elif dt is None or _timed(rows):
         return None
     _check_quantity(header)
     samples = [_number(word, at) for at, word in words]
-    return Sampled(dt, _converted(samples, header, units, count))
+    return Sampled(dt, *_converted(samples, header, units, count))
+
+
+def _timed(rows: Header) -> bool:
+    """Return whether three or more columns begin with one of times, which no samples do."""
+    words = [row.split() for _, row in rows]
+    if len({*map(len, words)}) > 1 or len(words[0]) < 3 or len(words) < 3:
+        return False
+    times = [float(row[0]) if is_number(row[0]) else 0.0 for row in words]
+    return not _uneven(np.array(times), range(len(times)))
 
 
 def _table(header: Header, rows: Header, units: str | None) -> Sampled:
@@ -214,7 +226,7 @@ def _table(header: Header, rows: Header, units: str | None) -> Sampled:
     if problem := _uneven(times, numbers):
         raise ValueError(problem)
     dt = float(times[-1] - times[0]) / (len(times) - 1)
-    return Sampled(dt, _converted(samples, header, units))
+    return Sampled(dt, *_converted(samples, header, units))
 
 
 def _pair(row: str, separator: str | None, at: int) -> tuple[float, float]:
@@ -282,12 +294,11 @@ def _split(lines: Sequence[str]) -> tuple[Header, Header]:
 
 def _converted(
     samples: ArrayLike, header: Header, given: str | None, count: int | None = None
-) -> FloatArray:
-    """Return samples in m/s2, in the unit that a header states or a user gives.
+) -> tuple[str, FloatArray]:
+    """Return the unit that a header states, or else a user gives, and the samples in m/s2.
 
-    What overflows is infinite. ValueError if the unit is stated nowhere or twice, if the stated one
-    is not of acceleration or not the given one, if there are more samples than a record may have,
-    or not as many as a header says.
+    What overflows is infinite. ValueError if the unit is stated nowhere or twice or is not of
+    acceleration, or there are more samples than a record may have, or not as many as a header says.
     """
     stated = {unit: at for at, line in header for unit in _units_in(line)}
     for unit, at in stated.items():
@@ -299,15 +310,13 @@ def _converted(
     if given is None and not stated:
         raise ValueError(f"it does not state its units; units must: {', '.join(UNITS)}")
     unit = next(iter(stated), given or "")
-    if given is not None and UNITS[given] != UNITS[unit]:
-        raise ValueError(f"it states {unit}; units must not be {given}")
     found = np.asarray(samples, dtype=np.float64)
     if found.size > MOST_SAMPLES:
         raise too_long(found.size)
     if count not in (None, found.size):
         raise ValueError(f"it holds {found.size} samples; it must hold the {count} of its header")
     with np.errstate(over="ignore"):
-        return np.asarray(UNITS[unit] * found)
+        return unit, np.asarray(UNITS[unit] * found)
 
 
 def _units_in(line: str) -> Iterable[str]:

@@ -64,7 +64,14 @@ class Record:
         object.__setattr__(self, "samples", samples)
 
     @classmethod
-    def read(cls, path: str | Path, units: str | None = None, dt: float | None = None) -> "Record":
+    def read(
+        cls,
+        path: str | Path,
+        units: str | None = None,
+        dt: float | None = None,
+        *,
+        insist: bool = True,
+    ) -> "Record":
         """Read a recorded ground acceleration.
 
         Parameters
@@ -79,6 +86,9 @@ class Record:
             Time [s] between samples of a file that does not state its own.
         units : {"g", "mg", "m/s2", "cm/s2", "mm/s2", "gal"}, optional
             Needed where the file does not state its own.
+        insist : bool, optional
+            Whether a file must not state another step or unit than the given one; without, what it
+            states holds.
 
         Raises
         ------
@@ -88,7 +98,7 @@ class Record:
             else in it leaves a doubt.
         """
         try:
-            found = read(Path(path), units, dt)
+            found = read(Path(path), units, dt, insist)
             return cls(dt=found.dt, samples=found.samples)
         except ValueError as problem:
             raise ValueError(f"path is {str(path)!r}; {problem}") from problem

@@ -1,10 +1,13 @@
-"""A list of blocks as a table: name, width and height, and perhaps friction."""
+"""A list of blocks as a table: name, width and height, perhaps friction, and further columns."""
 
 import csv
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import Path
+from typing import Literal
 
 from analytic.block import RigidBlock
 from analytic.slide import SlidingBlock
@@ -12,10 +15,19 @@ from analytic.text import is_number, lines_of, shown
 from studies.cases.refusal import BadInputError
 from studies.kit.scene_options import MOST_M
 
+Unit = Literal["m", "cm", "mm", "in"]
+UNITS: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 1e-3, "in": 0.0254}
+"""Unit of a size -> m."""
 NEEDED = ("name", "width", "height")
-COLUMNS = (*NEEDED, "friction")
-SHOWN = 10
-"""Bad lines that a refusal names; it is one line."""
+HEAD = re.compile(r"(width|height)[\s_,]*[(\[]?(mm|cm|m|in)[)\]]?")
+"""The name of a column that states its unit."""
+SKIPPED = re.compile(r"\s*#|sep=.$")
+"""Lines that belong to no table: comments, and how a spreadsheet names its separator."""
+MEANT = ("friction", "friction coefficient", "friction_coefficient", "cof", "mu", "µ", "μ")
+"""Names of a column that may be meant as friction."""
+THOUSANDS = re.compile(r"[1-9]\d{0,2}([.,]\d{3})+")
+
+Cells = Mapping[str, str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,6 +38,7 @@ class Cabinet:
     width_m: float
     height_m: float
     friction: float | None = None
+    further: Cells = field(default_factory=dict)  # cells of columns of other names
 
     @property
     def block(self) -> RigidBlock:
@@ -41,67 +54,104 @@ class Cabinet:
         return SlidingBlock(width=self.width_m, height=self.height_m, friction=friction)
 
 
-def read_cabinets(path: Path) -> list[Cabinet]:
-    """Read a list, separated by commas, semicolons or tabs; BadInputError names every bad line."""
-    found, bad = dict[str, Cabinet](), list[str]()
+def read_cabinets(path: Path, unit: Unit = "m", taken: Sequence[str] = ()) -> list[Cabinet]:
+    """Read a list, separated by commas, semicolons or tabs; BadInputError names what is wrong.
+
+    The unit is that of sizes whose column states none; a further column has no name that is taken.
+    """
+    found, bad = dict[str, Cabinet](), dict[str, list[tuple[int, str]]]()
     try:
-        for line, cells in _rows(lines_of(path)):
+        if path.suffix.lower() in (".xlsx", ".xls", ".ods", ".numbers"):
+            raise ValueError("it must be text; a spreadsheet saves it as CSV in UTF-8")
+        lines = ["" if SKIPPED.match(line) else line for line in lines_of(path)]
+        for line, cells, units in _rows(lines, unit, taken):
             try:
-                cabinet = _cabinet(cells)
+                cabinet = _cabinet(cells, units)
                 if cabinet.name in found:
-                    raise _bad("name", cabinet.name, "each block's own")
+                    raise _bad("name", cabinet.name, "be each block's own")
                 found[cabinet.name] = cabinet
             except ValueError as error:
-                bad.append(f"line {line}: {error}")
+                said, allowed = error.args
+                bad.setdefault(allowed, []).append((line, f"{said}; it must {allowed}"))
         if not found and not bad:
             raise ValueError("it has no rows; it must have a block a line below the names")
+        problems = []
     except (ValueError, csv.Error) as error:
-        bad.append(str(error))
-    if bad:
-        more = [f"{len(bad) - SHOWN} more lines cannot be used"] if len(bad) > SHOWN else []
-        raise BadInputError(f"the list is {str(path)!r}; {'; '.join([*bad[:SHOWN], *more])}")
+        problems = [str(error)]
+    for (line, said), *others in bad.values():
+        more = f" and {len(others)} more" if others else ""
+        problems.append(f"line {line}{more}: {said}")
+    if problems:
+        raise BadInputError(f"the list is {str(path)!r}; {'; '.join(problems)}")
     return [*found.values()]
 
 
-def _rows(lines: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
-    """Yield the cells of each row by their columns, and the line that it ends on."""
-    head = next((line for line in lines if line.strip()), "")
-    separator = max((",", ";", "\t"), key=head.count)
-    ended = (f"{line}\n" for line in lines)  # a name may hold the end of a line
+def _rows(
+    lines: Sequence[str], unit: Unit, taken: Sequence[str]
+) -> Iterator[tuple[int, Cells, Cells]]:
+    """Yield the line that each row ends on, its cells by their columns, and the columns' units.
+
+    Lines above the first that names all columns needed are titles.
+    """
+    filled = [at for at, line in enumerate(lines) if line.strip()] or [0]
+    named = (at for at in filled if all(word in lines[at].lower() for word in NEEDED))
+    begin = next(named, filled[0])
+    separator = max((",", ";", "\t"), key=lines[begin].count)
+    ended = (f"{line}\n" for line in lines[begin:])  # a name may hold the end of a line
     reader = csv.reader(ended, delimiter=separator, skipinitialspace=True, strict=True)
-    rows = ([word.strip() for word in row] for row in reader if any(row))
-    heads = [name.lower() for name in next(rows, [])]
-    if not {*NEEDED} <= {*heads} <= {*COLUMNS} or len(heads) > len({*heads}):
-        words = "name, width and height, in metres, and may be friction, each once"
+    rows = ([word.strip() for word in row] for row in reader if any(map(str.strip, row)))
+    heads, units = list[str](), dict[str, str]()
+    for word in next(rows, []):
+        stated = HEAD.fullmatch(word.lower())
+        plain = stated[1] if stated else word.lower()
+        heads.append(plain if plain in (*NEEDED, "friction") else word)
+        units[heads[-1]] = stated[2] if stated else unit
+    while heads[-1:] == [""]:
+        heads.pop()
+    if not {*NEEDED} <= {*heads} or len(heads) > len({*heads}):
+        words = "name, width and height, and may be friction and others, each once"
         raise ValueError(f"it has the columns {', '.join(heads)!r}; they must be {words}")
+    for head in {*heads} - {*NEEDED, "friction"}:
+        if head in taken:
+            raise ValueError(
+                f"its column {head!r} must be renamed, as results have one of that name"
+            )
+        if not head or head.lower() in MEANT or get_close_matches(head.lower(), MEANT, cutoff=0.7):
+            raise ValueError(f"its column {shown(head)} must have a name, friction if it is that")
     for row in rows:
-        many = len(row) != len(heads)
-        yield reader.line_num, {} if many else dict(zip(heads, row, strict=True))
+        while len(row) > len(heads) and not row[-1]:
+            row.pop()
+        whole = len(row) == len(heads)
+        yield reader.line_num, dict(zip(heads, row, strict=True)) if whole else {}, units
 
 
-def _cabinet(cells: Mapping[str, str]) -> Cabinet:
-    """Return the block of a line; ValueError names its first bad value."""
+def _cabinet(cells: Cells, units: Cells) -> Cabinet:
+    """Return the block of a line; ValueError says its first bad value, and what it must do."""
     if not cells:
-        raise ValueError("it must have a value for each column")
+        words = "have one for each column; decimal commas need semicolons between columns"
+        raise ValueError("it has more cells or fewer than the names", words)
     if not (0 < len(name := cells["name"]) <= 300 and name.isprintable()):
-        raise _bad("name", name, "1 to 300 letters, without ends of lines, tabs and the like")
-    width, height = (_number(cells, name, 1e-3, MOST_M, " m") for name in NEEDED[1:])
-    # no base is smoother
-    friction = _number(cells, "friction", 1e-3, 1e6) if cells.get("friction") else None
-    return Cabinet(name=name, width_m=width, height_m=height, friction=friction)
+        raise _bad("name", name, "be 1 to 300 letters, without ends of lines, tabs and the like")
+    width, height = (_number(cells, name, units[name]) for name in NEEDED[1:])
+    friction = _number(cells, "friction") if cells.get("friction") else None
+    further = {head: cells[head] for head in cells if head not in (*NEEDED, "friction")}
+    return Cabinet(name=name, width_m=width, height_m=height, friction=friction, further=further)
 
 
-def _number(
-    cells: Mapping[str, str], column: str, low: float, high: float, unit: str = ""
-) -> float:
+def _number(cells: Cells, column: str, unit: str = "") -> float:
+    """Return a size in metres, or a friction; a decimal comma is one."""
     word = cells[column]
-    value = float(word) if is_number(word) else math.nan
+    plain, scale = word.replace(",", "."), UNITS.get(unit, 1.0)
+    low, high = (1e-3, MOST_M) if unit else (1e-3, 1e6)  # no base is smoother
+    value = scale * float(plain) if is_number(plain) else math.nan
+    if unit not in ("", "m") and THOUSANDS.fullmatch(word):
+        raise _bad(column, word, f"be in {unit} without a mark between thousands")
     if not low <= value <= high:
-        meant = f" ({1e-3 * value:g} for {value:g} mm?)" if unit == " m" and value > high else ""
-        point = ", with a decimal point" if "," in word else ""
-        raise _bad(column, word, f"from {low:.6g} to {high:.6g}{unit}{meant}{point}")
+        allowed = f"be from {low / scale:.6g} to {high / scale:.6g} {unit}".rstrip()
+        large = unit == "m" and value > high
+        raise _bad(column, word, f"{allowed}; --unit mm takes millimetres" if large else allowed)
     return value
 
 
 def _bad(column: str, value: str, allowed: str) -> ValueError:
-    return ValueError(f"{column} is {shown(value)}; it must be {allowed}")
+    return ValueError(f"{column} is {shown(value)}", allowed)

@@ -14,14 +14,19 @@ Baseline = Literal["none", "constant", "linear"]
 
 
 def read_record(
-    path: Path, units: str | None = None, baseline: Baseline | None = None, dt: float | None = None
+    path: Path,
+    units: str | None = None,
+    baseline: Baseline | None = None,
+    dt: float | None = None,
+    *,
+    insist: bool = True,
 ) -> Record:
     """Read a recorded ground acceleration [m/s2], as `Record.read` does, and correct it.
 
     A record that cannot be read, or is zero or nothing but its trend, is refused.
     """
     try:
-        record = Record.read(path, units, dt)
+        record = Record.read(path, units, dt, insist=insist)
     except ValueError as error:
         problem = re.sub(r"; units(?= must)", "; --units", str(error).removeprefix("path"))
         problem = re.sub(r"; dt(?=,| must not)", "; --record-dt", problem)

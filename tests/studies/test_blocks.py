@@ -82,17 +82,23 @@ def test_a_used_folder_refuses_another_list_and_takes_a_longer_one(place, capsys
 
 BAD = [
     (HEAD + "A,-1,1.5,\n", "line 2: width is '-1'; it must be from 0.001 to 200 m"),
-    (HEAD + "A,500,1500,\n", "line 2: width is '500'; .* (0.5 for 500 mm?)"),
+    (HEAD + "A,500,1500,\n", "line 2: width is '500'; .*; --unit mm takes millimetres"),
+    (HEAD + "A,500,900,\n" * 3, "line 2 and 2 more: width is '500'; "),
     (HEAD + "A,0.5,nan,\n", "line 2: height is 'nan'"),
-    (HEAD + 'A,"0,5",1.5,\n', "line 2: width is '0,5'; .*, with a decimal point"),
+    ("name;width mm;height;note;note\n", "each once"),
+    (HEAD.replace(",w", ",W (mm),w").replace("W", "width") + "A,1\n", "each once"),
+    ("name;width mm;height\nA;1,500;1\n", "be in mm without a mark between thousands"),
+    ("name;width;height;mu\n", "its column 'mu' must have a name, friction if it is that"),
+    ("name;width;height;margin\n", "its column 'margin' must not be named as one of the results"),
+    (HEAD + "A,0,5,1,5,\n", "line 2: it has more .* decimal commas need semicolons"),
     (HEAD + "A,0.5,1.5,0\n", "line 2: friction is '0'; it must be from 0.001"),
     (HEAD + "B\u202eC,0.5,1.5,\n", r"line 2: name is 'B\u202eC'; it must be 1 to 300 letters"),
     (HEAD + "A,0.5,1.5,\n\nA,0.4,1.5,\n", "line 4: name is 'A'; it must be each block's own"),
-    (HEAD + "A,0.5\n", "line 2: it must have a value for each column"),
+    (HEAD + "A,0.5\n", "line 2: it has more cells or fewer than the names"),
     (HEAD + "A,0,1,\nB,1,1,\nC,1,x,\n", "line 2: width is '0'; .*; line 4: height is 'x'"),
     (HEAD, "it has no rows"),
     ("", "it has the columns ''; they must be name, width and height"),
-    ("name,width,height,frictoin\nA,1,1,1\n", "it has the columns 'name, width, height, frictoin'"),
+    ("name,width,height,frictoin\nA,1,1,1\n", "its column 'frictoin' must have a name, friction"),
     ('name,width,height\n"A,1,1\n', "unexpected end of data"),
 ]  # fmt: skip
 
