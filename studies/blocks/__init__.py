@@ -6,7 +6,7 @@ import json
 import math
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
@@ -17,13 +17,14 @@ import pandas as pd
 from cyclopts import Parameter
 
 from analytic.accelerograms import Units
-from analytic.block import RigidBlock
+from analytic.block import GRAVITY, RigidBlock
 from analytic.conditioning import scaled
 from analytic.record import Record
 from analytic.response import Outcome
 from analytic.simulate import simulate
-from analytic.start import strongest
-from studies.blocks.cabinets import Cabinet, read_cabinets
+from analytic.slide import SlidingBlock
+from studies.blocks.cabinets import Cabinet, Unit, read_cabinets
+from studies.blocks.fragility import MOST_ONSETS, fragility
 from studies.cases.accelerograms import Baseline, baseline_note, read_record
 from studies.kit import arguments
 from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
@@ -37,8 +38,6 @@ from studies.measures.presets import is_engine
 
 APART = 0.01
 """Relative distance of two factors."""
-MOST_ONSETS = 100.0
-"""Over the onset: the largest factor tried."""
 WIDTH = 1e-6
 """Relative width to which the margin is known."""
 
@@ -54,17 +53,33 @@ class Strength(NamedTuple):
     margin_friction: float
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Apart(Job):
+    """A job in a process of its own, for one of many searches."""
+
+    @property
+    def needs_process(self) -> bool:
+        """Always."""
+        return True
+
+
 ALL_SCALES = 0.0
 """Scale of the row that is about all factors on a record: how strong it must be."""
 CASE, PAIR = ["name", "record", "scale"], ["name", "record"]
 FOUND = [*Strength._fields]
 """Columns of a block under a record, at whatever factor."""
 COLUMNS = [
-    *("name", "width_m", "height_m", "friction", "record", "record_digest", "scale"),
-    *("source", "outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
-    *("friction_needed", *FOUND),
+    *("name", "width_m", "height_m", "friction", "record", "record_digest", "pga_g", "pgv_m_s"),
+    *("baseline", "scale", "source", "outcome", "peak_ratio", "impacts", "steps", "wall_s"),
+    *("message", "slip_m", "residual_m", "friction_needed", *FOUND),
 ]
-SLIDES_FIRST = "slides first"
+TAKEN = (*COLUMNS, "no_margin")
+"""Names that no further column of a list may have."""
+MOST_LISTED = 60
+"""Rows of a table on the page."""
+MANY = 100
+"""Searches from which on they run in processes, beside each other."""
+FLAT, SLIDES_FIRST = "slides", "slides first"
 """Friction is less than the rocking needs: a block has no margin, a model no answer."""
 
 
@@ -76,8 +91,14 @@ def jobs(
     baseline: str = "",
 ) -> list[Job]:
     """Return a job for each block, record, scale and source, and a search for each margin."""
-    digests = {
-        name: sha256(json.dumps(ground, default=plain).encode()).hexdigest()[:12]
+    moves = {
+        name: {
+            "record": name,
+            "record_digest": sha256(json.dumps(ground, default=plain).encode()).hexdigest()[:12],
+            "pga_g": ground.peak / GRAVITY,
+            "pgv_m_s": float(np.abs(ground.velocity(ground.breakpoints)).max()),
+            "baseline": baseline,
+        }
         for name, ground in grounds.items()
     }
     moved = {}
@@ -85,7 +106,7 @@ def jobs(
         with arguments.as_bad_input(f"--record {name} times --scale {scale:g}: "):
             moved[name, scale] = grounds[name].scaled(scale or 1.0)
     asked = [*product(scales, sources), (ALL_SCALES, "exact")]
-    found = []
+    found, many = list[Job](), len(cabinets) * len(grounds) >= MANY
     for cabinet, name, (scale, source) in product(cabinets, grounds, asked):
         engine, motion = is_engine(source), moved[name, scale]
         # a model of what rocks is not asked about what slides: `tabulate` marks its row
@@ -93,11 +114,12 @@ def jobs(
         if scale == ALL_SCALES and not isinstance(block, RigidBlock):
             continue
         window = window_of(block, motion)
-        moves = {"record": name, "record_digest": digests[name], "baseline": baseline}
+        listed = asdict(cabinet)
+        listed |= listed.pop("further")
         rubs = engine and cabinet.friction is not None
         found.append(
-            Job(
-                labels={**asdict(cabinet), **moves, "scale": scale},
+            (Apart if many and scale == ALL_SCALES else Job)(
+                labels={**listed, **moves[name], "scale": scale},
                 case=Question(system=block, motion=motion, duration=window),
                 source=source,
                 options={"friction": cabinet.friction} if rubs else {},
@@ -121,6 +143,9 @@ def measure(job: Job) -> Row:
     row, note = summary(response), baseline_note(motion, job.labels["baseline"] or None)
     row["message"] = "; ".join(filter(None, (row["message"], note)))
     rocks = job.source == "exact" and isinstance(block, RigidBlock)
+    places = np.abs(np.cumsum([0.0, *response.slips]))  # it turns back where a slip ends
+    if isinstance(block, SlidingBlock) and response.outcome is not Outcome.FAILED:
+        row |= {"slip_m": float(places.max()), "residual_m": float(places[-1])}
     return {**row, "friction_needed": response.friction_needed if rocks else math.nan}
 
 
@@ -139,7 +164,7 @@ def strength(block: RigidBlock, motion: Record) -> Strength:
             raise RuntimeError(f"no margin: the solution at the factor {factor:g} failed")
         return outcome is Outcome.OVERTURNED
 
-    lifts = math.tan(block.alpha) * block.gravity / strongest(motion)
+    lifts = math.tan(block.alpha) * block.gravity / motion.peak
     count = round(math.log(MOST_ONSETS) / math.log1p(APART))
     factors = [lifts * (1.0 + APART) ** n for n in range(1, count + 1)]
     found = next((n for n, factor in enumerate(factors) if falls(factor)), None)
@@ -160,7 +185,8 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     that the search did not see. What slides has no margin, nor an answer of a source that cannot
     let it slide.
     """
-    rows = rows.reindex(columns=COLUMNS).astype({"friction": float})
+    further = [name for name in rows if name not in COLUMNS]
+    rows = rows.reindex(columns=[*COLUMNS, *further]).astype({"friction": float})
     answers, margins = rows[rows["scale"] > 0.0], rows[rows["scale"] == ALL_SCALES]
     exact = answers[answers["source"] == "exact"].rename(columns={"outcome": "exact_outcome"})
     exact = exact.set_index(CASE)[["exact_outcome", "friction_needed"]]
@@ -174,7 +200,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     failed = table["searched"] == Outcome.FAILED.value
     weak = short & (table["scale"] <= table["margin"])
     weak |= table["friction"] < table["margin_friction"]
-    words = ["slides", Outcome.FAILED.value, SLIDES_FIRST]
+    words = [FLAT, Outcome.FAILED.value, SLIDES_FIRST]
     weak = weak.groupby(pair).transform("any")
     table["no_margin"] = np.select([flat, failed, weak], words, "")
     table.loc[table["no_margin"] != "", "margin"] = math.nan
@@ -182,7 +208,9 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     moved = short | (flat & (table["exact_outcome"] != Outcome.AT_REST.value))
     moved &= ~table["outcome"].isin(kept) & ~table["source"].map(is_engine)
     table.loc[moved, ["outcome", "peak_ratio"]] = SLIDES_FIRST, math.nan
-    return {"blocks": table.drop(columns=["exact_outcome", "searched"])}
+    table = table.drop(columns=["exact_outcome", "searched"])
+    several = table["record"].nunique() > 1
+    return {"blocks": table, **({"fragility": fragility(ranked(table))} if several else {})}
 
 
 def ranked(rows: pd.DataFrame) -> pd.DataFrame:
@@ -193,36 +221,68 @@ def ranked(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def finding(tables: Tables) -> str:
-    """Say how many blocks overturn under a record as it is, and which does so first."""
+    """Say how many blocks overturn, which does so first, and what slides."""
     lines = ranked(tables["blocks"])
     blocks, finite = lines["name"].nunique(), lines[np.isfinite(lines["margin"])]
     if finite.empty:
-        return f"No factor on a record was found to overturn one of {blocks} blocks."
-    first, fallen = finite.iloc[0], lines.loc[lines["margin"] <= 1.0, "name"].nunique()
-    return (
-        f"{capital(out_of(fallen, blocks))} blocks overturn under a record as it is or weaker; "
-        f"{first['name']} overturns first, at {first['margin']:.4g} times {first['record']}."
-    )
+        words = f"No factor on a record was found to overturn one of {blocks} blocks."
+    else:
+        first, fallen = finite.iloc[0], lines.loc[lines["margin"] <= 1.0, "name"].nunique()
+        words = (
+            f"{capital(out_of(fallen, blocks))} blocks overturn at a factor of 1 on a record or "
+            f"below; {first['name']} overturns first, at {first['margin']:.4g} times "
+            f"{first['record']}."
+        )
+    flat = lines.loc[lines["no_margin"] == FLAT, "name"].nunique()
+    if flat:
+        words += f" {capital(out_of(flat, blocks))} blocks slide and do not rock."
+    if short := int((lines["no_margin"] == SLIDES_FIRST).sum()):
+        pairs = "block and record" if len(lines) == 1 else "pairs of a block and a record"
+        words += f" In {out_of(short, len(lines))} {pairs} the block slides first: no margin holds."
+    if "fragility" in tables:
+        every = tables["fragility"].query("measure == 'factor'").iloc[-1]
+        words += (
+            f"\n\nUnder half of {every['records']:.0f} records a block of the list overturns at "
+            f"the factor {every['median']:.3g} or below (spread β {every['beta']:.2g})."
+        )
+    return words
 
 
 def shown(tables: Tables) -> Tables:
-    """Return the factors and answers of each block and record."""
+    """Return the factors and answers of each block and record, and what several records say."""
     rows = tables["blocks"]
-    peak = rows["peak_ratio"].map(" {:.4g}".format).where(rows["outcome"] == "rocked", "")
+    slipped = rows["slip_m"].map(" {:.3g} m".format).where(rows["outcome"] == "slid", "")
+    peak = rows["peak_ratio"].map(" {:.3g}".format).where(rows["outcome"] == "rocked", slipped)
     heads = rows["source"] + " × " + rows["scale"].map("{:g}".format)
     cells = rows[PAIR].assign(head=heads, cell=rows["outcome"] + peak)
     answers = cells.pivot(index=PAIR, columns="head", values="cell")[[*heads.unique()]]
-    facts = ["width_m", "height_m", "friction", *FOUND, "no_margin"]
+    lines = ranked(rows)
+    words = lines["margin"].map("{:.4g}".format).where(lines["no_margin"] == "", lines["no_margin"])
+    facts = lines.assign(**{
+        "B × H [m]": lines["width_m"].map("{:g} × ".format) + lines["height_m"].map("{:g}".format),
+        "needed": lines["margin_friction"],
+        "overturns at": words,
+    })  # fmt: skip
+    facts = facts[[*PAIR, "B × H [m]", "friction", "needed", "lifts", "overturns at"]]
     title = "Factors on a record that lift and overturn each block, and outcomes with peaks"
-    return {title: ranked(rows)[[*PAIR, *facts]].merge(answers, on=PAIR)}
+    short = {}
+    if "fragility" in tables:
+        over = tables["fragility"].query("measure == 'factor'")
+        columns = ["name", "records", "left_out", "least", "median", "theta", "beta"]
+        columns += ["theta_low", "theta_high"]
+        short = {"Factors that overturn each block, over the records": over[columns]}
+    return {**short, title: facts.merge(answers, on=PAIR)}
 
 
 def figures(tables: Tables) -> Figures:
     """Draw the ranking of the blocks."""
-    from studies.drawing.blocks import draw_blocks
+    from studies.drawing.blocks import draw_blocks, draw_fragility
 
-    rows, title = tables["blocks"], finding(tables).removesuffix(".")
-    return {"blocks": draw_blocks(ranked(rows), sorted(set(rows["scale"])), title)}
+    rows, title = tables["blocks"], finding(tables).partition("\n")[0].removesuffix(".")
+    drawn = {"blocks": draw_blocks(ranked(rows), sorted(set(rows["scale"])), title)}
+    if "fragility" in tables:
+        drawn["fragility"] = draw_fragility(tables["fragility"], ranked(rows))
+    return drawn
 
 
 STUDY = Study(
@@ -238,7 +298,8 @@ STUDY = Study(
     texts=("name", "record", "record_digest", "source", "outcome", "no_margin"),
     captions={
         "blocks": "Blocks ranked by the factor on a record that overturns them first; a line from "
-        "the factor that lifts a block to the one that overturns it."
+        "the factor that lifts a block to the one that overturns it.",
+        "fragility": "Part of the records that overturn a block of the list, by their factor.",
     },
 )
 
@@ -250,6 +311,8 @@ def command(
     record: Annotated[tuple[arguments.Place, ...], arguments.several],
     out: arguments.Out,
     scale: Annotated[tuple[arguments.Positive, ...], arguments.several] = (1.0,),
+    pga: arguments.Positive | None = None,
+    unit: Annotated[Unit, arguments.one_of(Unit)] = "m",
     record_dt: arguments.Positive | None = None,
     units: Annotated[Units, arguments.one_of(Units)] | None = None,
     baseline: Annotated[Baseline, arguments.one_of(Baseline)] | None = None,
@@ -267,17 +330,20 @@ def command(
     Parameters
     ----------
     cabinets
-        A table with a line of names: name, width and height [m] of each block, and perhaps its
-        friction.
+        A table with a line of names: name, width and height of each block, and perhaps its
+        friction; further columns are kept. A line that begins with # is a comment.
     record
         Recorded accelerograms, files as `rocking compare --record` takes them.
     scale
         Factors on the records' acceleration.
+    pga
+        Scale each record to this largest absolute acceleration [g] before.
+    unit
+        Of width and height, where the name of a column does not state it, as width_mm does.
     record_dt
         Time [s] between the samples of files that do not state it: of one column.
     units
-        Of the records' acceleration: needed where a file does not state them, refused where one
-        states others.
+        Of the acceleration in files that do not state them; what a file states holds.
     baseline
         Correct the records by what scipy.signal.detrend takes away: their mean (constant) or the
         line that fits them best (linear).
@@ -286,23 +352,47 @@ def command(
 
     arguments.refuse_repeats("--scale", scale)
     arguments.refuse_repeats("--record", [Path(path.name) for path in record])
-    grounds = {path.name: read_record(path, units, baseline, record_dt) for path in record}
-    listed = read_cabinets(cabinets)
+    grounds = {
+        path.name: read_record(path, units, baseline, record_dt, insist=False) for path in record
+    }
+    if pga is not None:
+        with arguments.as_bad_input("--record scaled to --pga: "):
+            grounds = {name: each.scaled_to(pga * GRAVITY) for name, each in grounds.items()}
+    listed = read_cabinets(cabinets, unit, TAKEN)
     sources = tuple(dict.fromkeys(["exact", *sources]))
     given = {"sources": sources, "scale": scale, "units": units, "baseline": baseline}
     found = jobs(listed, grounds, scale, sources, baseline or "")
-    code = STUDY.carry_out(out, found, running, record=[*grounds], record_dt=record_dt, **given)
+    code = STUDY.carry_out(
+        out, found, running, record=[*grounds], record_dt=record_dt, pga=pga, **given
+    )
     tables = STUDY.read(out)
     pages = Environment(loader=PackageLoader("studies.blocks", "."), autoescape=True)
+    listing = shown(tables)
+    pictures = ("blocks", "fragility") if "fragility" in tables else ("blocks",)
     page = pages.get_template("page.html.jinja").render(
-        finding=finding(tables),
-        picture=b64encode((out / "blocks.png").read_bytes()).decode(),
+        finding=finding(tables).split("\n\n"),
+        pictures=[
+            (STUDY.caption_of(name), b64encode((out / f"{name}.png").read_bytes()).decode())
+            for name in pictures
+        ],
+        records=[(name, ground, trace(ground)) for name, ground in grounds.items()],
+        found=tables["blocks"].drop_duplicates("record").set_index("record"),
         tables={
-            title: table.to_html(index=False, na_rep="–", float_format="{:.4g}".format)
-            for title, table in shown(tables).items()
+            title: table.head(MOST_LISTED).to_html(
+                index=False, na_rep="–", float_format="{:.3g}".format, border=0
+            )
+            for title, table in listing.items()
         },
+        more={title: len(table) - MOST_LISTED for title, table in listing.items()},
         rules={"APART": APART, "WIDTH": WIDTH, "MOST_ONSETS": MOST_ONSETS},
         made=provenance_of(out),
     )
     write_text(out / "blocks.html", page)
     return code
+
+
+def trace(record: Record, across: int = 300) -> str:
+    """Return the points of a line between the least and the most of each part of a record."""
+    parts = np.array_split(record.samples / record.peak, min(across, record.samples.size))
+    ends = enumerate((part.min(), part.max()) for part in parts)
+    return " ".join(f"{x},{20.0 - 19.0 * end:.1f}" for x, pair in ends for end in pair)

@@ -59,7 +59,7 @@ def read_cabinets(path: Path, unit: Unit = "m", taken: Sequence[str] = ()) -> li
 
     The unit is that of sizes whose column states none; a further column has no name that is taken.
     """
-    found, bad = dict[str, Cabinet](), dict[str, list[tuple[int, str]]]()
+    found, bad = dict[str, Cabinet](), dict[tuple[str, str], list[tuple[int, str]]]()
     try:
         if path.suffix.lower() in (".xlsx", ".xls", ".ods", ".numbers"):
             raise ValueError("it must be text; a spreadsheet saves it as CSV in UTF-8")
@@ -72,7 +72,8 @@ def read_cabinets(path: Path, unit: Unit = "m", taken: Sequence[str] = ()) -> li
                 found[cabinet.name] = cabinet
             except ValueError as error:
                 said, allowed = error.args
-                bad.setdefault(allowed, []).append((line, f"{said}; it must {allowed}"))
+                same = bad.setdefault((said.partition(" ")[0], allowed), [])
+                same.append((line, f"{said}; it must {allowed}"))
         if not found and not bad:
             raise ValueError("it has no rows; it must have a block a line below the names")
         problems = []

@@ -11,11 +11,16 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from scipy.stats import norm
 
 from studies.drawing.facets import key, sheet
 from studies.drawing.letters import drawable, families
 from studies.drawing.styles import look_at
 
+MOST_RECORDS = 5
+"""Records that are drawn one by one."""
+MOST_NAMED = 6
+"""Curves with a name in the key, of the blocks that overturn first."""
 MOST_DRAWN = 60
 """Blocks in the picture, those that overturn first."""
 
@@ -30,11 +35,17 @@ def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Fig
     names = [*dict.fromkeys(lines["name"])]
     kept = f"; these {MOST_DRAWN} first" if len(names) > MOST_DRAWN else ""
     names = names[:MOST_DRAWN]
+    many = len(records) > MOST_RECORDS
     fonts = families([title, *names, *records])
     with rc_context({"font.family": fonts, "text.parse_math": False}):
-        drawing, (axes,) = sheet((8.0, 1.9 + len(names) * max(0.21, 0.1 * len(records))))
+        drawing, (axes,) = sheet(
+            (8.0, 1.9 + len(names) * max(0.21, 0.0 if many else 0.1 * len(records)))
+        )
         key_of = dict[int, Line2D]()
-        for line in lines[lines["name"].isin(names)].to_dict("records"):
+        for level, name in enumerate(names if many else ()):
+            key_of |= _draw_spread(axes, lines[lines["name"] == name], level)
+        one_by_one = lines[lines["name"].isin(() if many else names)]
+        for line in one_by_one.to_dict("records"):
             place = records.index(line["record"])
             shift = 0.6 * ((place + 0.5) / len(records) - 0.5)
             found = _draw_line(axes, line, names.index(line["name"]) + shift, place)
@@ -51,6 +62,62 @@ def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Fig
         axes.set_title(drawable(title) + kept, fontsize=10, wrap=True)
         handles = [key_of[place] for place in sorted(key_of)]
         key(drawing, [*handles, asked], min(len(handles) + 1, 4), 10.0)
+    return drawing
+
+
+def _draw_spread(axes: Axes, lines: pd.DataFrame, level: int) -> dict[int, Line2D]:
+    """Draw the factors that overturn a block under many records; return what the key says."""
+    margins, colour = lines["margin"].dropna(), look_at(0)[0]
+    finite = np.sort(margins[np.isfinite(margins)])
+    left, none = len(lines) - len(margins), len(margins) - len(finite)
+    texts = [f"slides first or no result: {left} of {len(lines)}"] * bool(left)
+    texts += [f"none found: {none} of {len(lines)}"] * bool(none)
+    axes.annotate("; ".join(texts) + " ", (1.0, level - 0.3), xycoords=("axes fraction", "data"),
+                  ha="right", va="center", fontsize=6, color="#666666")  # fmt: skip
+    looks: tuple[dict[str, Any], ...] = (
+        {"linewidth": 0.8, "label": "least to largest factor that overturns"},
+        {"linewidth": 3.0, "alpha": 0.5, "label": "16 to 84 % of the records"},
+        {"linestyle": "none", "marker": "o", "markersize": 4.5, "label": "median"},
+    )
+    ends = ([0.0, 1.0], [0.16, 0.84], [0.5])
+    if len(finite):
+        for parts, look in zip(ends, looks, strict=True):
+            places = np.quantile(finite, parts)
+            axes.plot(places, [level] * len(places), color=colour, **look)
+    return {at: Line2D([], [], color=colour, **look) for at, look in enumerate(looks)}
+
+
+def draw_fragility(fits: pd.DataFrame, lines: pd.DataFrame) -> Figure:
+    """Draw the part of the records that overturns each block, by their factor; of the list, dots.
+
+    The fits have the columns of fragility.csv, the lines those of blocks.csv.
+    """
+    fits = fits[(fits["measure"] == "factor") & fits["theta"].notna()]
+    drawing, (axes,) = sheet((8.0, 4.2))
+    names = fits["name"].tolist()
+    with rc_context({"font.family": families(names), "text.parse_math": False}):
+        for place, fit in enumerate(fits.to_dict("records")):
+            whole = place == len(fits) - 1
+            factors = fit["theta"] * np.exp(np.linspace(-3.0, 3.0, 121) * max(fit["beta"], 1e-3))
+            chance = norm.cdf(np.log(factors / fit["theta"]) / max(fit["beta"], 1e-3))
+            colour, width = ("black", 2.2) if whole else (look_at(place)[0], 0.9)
+            count = f"{_short(fit['name'])}, {fit['records']} records"
+            label = count if whole or place < MOST_NAMED else None
+            axes.plot(factors, chance, color=colour, linewidth=width, label=label)
+        if len(fits):
+            ends = [fit["theta_low"], fit["theta_high"]]
+            axes.plot(ends, [0.5, 0.5], color="black", linewidth=5.0, alpha=0.4,
+                      label="its median, 90 % interval")  # fmt: skip
+            least = np.sort(lines.groupby("record")["margin"].min().dropna())
+            parts = (np.arange(len(least)) + 0.5) / len(least)
+            axes.plot(least[np.isfinite(least)], parts[np.isfinite(least)], ".", color="black",
+                      label="least factor of each record")  # fmt: skip
+            axes.legend(fontsize=8, frameon=False, loc="lower right")
+        axes.set(xscale="log", ylim=(0.0, 1.0), xlabel="factor on the record  [–]",
+                 ylabel="part of the records that overturn")  # fmt: skip
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter("{x:g}")
+        axes.grid(alpha=0.2)
     return drawing
 
 

@@ -10,11 +10,13 @@ from commanding import refused
 from given import noise
 from records import write_record
 
-from analytic import Outcome, Record, RigidBlock, simulate
+from analytic import Outcome, Record, RigidBlock, SlidingBlock, simulate
 from analytic.criteria import overturning_velocity
 from studies import blocks
 from studies.__main__ import run
 from studies.blocks import WIDTH, strength
+from studies.blocks.cabinets import read_cabinets
+from studies.blocks.fragility import lognormal
 from studies.kit.tables import read_table
 
 HEAD = "name,width,height,friction\n"
@@ -89,7 +91,7 @@ BAD = [
     (HEAD.replace(",w", ",W (mm),w").replace("W", "width") + "A,1\n", "each once"),
     ("name;width mm;height\nA;1,500;1\n", "be in mm without a mark between thousands"),
     ("name;width;height;mu\n", "its column 'mu' must have a name, friction if it is that"),
-    ("name;width;height;margin\n", "its column 'margin' must not be named as one of the results"),
+    ("name;width;height;margin\n", "its column 'margin' must be renamed"),
     (HEAD + "A,0,5,1,5,\n", "line 2: it has more .* decimal commas need semicolons"),
     (HEAD + "A,0.5,1.5,0\n", "line 2: friction is '0'; it must be from 0.001"),
     (HEAD + "B\u202eC,0.5,1.5,\n", r"line 2: name is 'B\u202eC'; it must be 1 to 300 letters"),
@@ -159,6 +161,70 @@ def test_a_scale_that_overturns_in_a_sliver_counts_and_a_failed_search_has_no_ma
     table = blocks.tabulate(pd.DataFrame(weak))["blocks"]
     assert table["no_margin"].tolist() == ["slides first"] * 2
     assert table["outcome"].tolist() == ["rocked", "slides first"]
+
+
+SPREADSHEETS = [
+    "name;width;height\nA;0,5;1,5\n",
+    '\ufeffName,WIDTH,Height\r\nA,"0,5",1.5\r\n',
+    "sep=;\nname;width_mm;height (cm);friction\nA;500;150;\n;;;\n",
+    "Rooms 3 and 4\n# as measured\n\nname\twidth\theight\troom;no\nA\t0.5\t1.5\t007\n",
+    "name,width,height,,\nA,0.5,1.5,,\n# B,1,1,,\n",
+]
+
+
+@pytest.mark.parametrize("text", SPREADSHEETS)
+def test_a_list_is_read_as_spreadsheets_write_it(text, tmp_path):
+    (tmp_path / "list.csv").write_bytes(text.encode())
+    (found,) = read_cabinets(tmp_path / "list.csv")
+    assert (found.name, found.width_m, found.height_m, found.friction) == ("A", 0.5, 1.5, None)
+    assert [*found.further.values()] == ["007"] * ("room" in text)
+
+
+def test_several_records_of_all_kinds_make_a_fragility(place, capsys):
+    """A column without unit or step, a table and an AT2 file, that state theirs; scaled alike."""
+    count = SHAKEN.samples.size
+    other, third = noise(7, count, 0.01, 3.0), noise(8, count, 0.01, 4.0)
+    rows = [f"{0.01 * at:.2f},{a!r}\n" for at, a in enumerate(other.samples.tolist())]
+    (place / "o.csv").write_text("time_s,acceleration_m_s2\n" + "".join(rows))
+    (place / "t.txt").write_text("\n".join(map(repr, (third.samples / 9.81).tolist())))
+    (place / "list.csv").write_text("name;width;height;Room\nA;500;1500;007\nB;400;2000;x\n")
+    asked = [*ASKED[:4], "o.csv", "t.txt", "--pga", "0.5", "--unit", "mm", "--units", "g"]
+    assert run([*asked, "--record-dt", "0.01", "--out", "out"]) == 0
+    found, tables = read(place), blocks.STUDY.read(place / "out")
+    assert set(found["Room"]) == {"007", "x"} and found["pga_g"].tolist() == [0.5] * 6
+    block = RigidBlock(width=0.5, height=1.5)
+    margins = [strength(block, each.scaled_to(4.905)).margin for each in (SHAKEN, other, third)]
+    assert found.loc[found["name"] == "A", "margin"].tolist() == pytest.approx(margins, rel=1e-5)
+    fits = tables["fragility"].set_index(["name", "measure"])
+    fit = fits.loc["A", "factor"]
+    assert fit["records"] == 3 and fit["median"] == pytest.approx(np.median(margins), rel=1e-5)
+    assert fit["theta"] == pytest.approx(np.exp(np.mean(np.log(margins))), rel=1e-5)
+    assert fit["theta_low"] <= fit["theta"] <= fit["theta_high"]
+    assert fits.loc[("A", "pga_g"), "theta"] == pytest.approx(0.5 * fit["theta"])
+    both = found.groupby("record")["margin"].min()
+    assert fits.loc[("any of the list", "factor"), "least"] == both.min()
+    assert (place / "out" / "blocks.html").read_text().count("<svg") == 3
+
+
+def test_a_lognormal_of_what_is_known_to_be_larger():
+    """Of 4000 normal numbers cut at their 60th part of a hundred; without cuts, mean and spread."""
+    drawn = np.random.default_rng(3).normal(0.7, 0.4, 4000)
+    cut = np.quantile(drawn, 0.6)
+    whole = lognormal(drawn, np.zeros(4000, bool))
+    assert whole == pytest.approx((drawn.mean(), drawn.std()))
+    assert lognormal(np.minimum(drawn, cut), drawn > cut) == pytest.approx((0.7, 0.4), abs=0.02)
+
+
+def test_a_block_of_little_friction_slides_as_far_as_the_reference(place, capsys):
+    (place / "list.csv").write_text(HEAD + "B,0.45,1.9,0.2\n")
+    assert run(ASKED) == 0
+    box = SlidingBlock(width=0.45, height=1.9, friction=0.2)
+    places = np.cumsum(simulate(box, Record.read(place / "X.AT2")).slips)
+    (row,) = read(place).to_dict("records")
+    assert row["slip_m"] == pytest.approx(np.abs(places).max()) and len(places) > 1
+    assert row["residual_m"] == pytest.approx(abs(places[-1]))
+    assert (row["outcome"], row["no_margin"]) == ("slid", "slides") and np.isnan(row["margin"])
+    assert "1 of 1 blocks slide" in (place / "out" / "findings.txt").read_text()
 
 
 NAMES = ["nan", "007", "$x_1$", "<b>&", "Schrank Ä 3", "a" * 300, "サーバー", "🗄️ B", "=1+1"]
