@@ -115,6 +115,7 @@ def scaled(
     """
     posed = pose(block, motion, model, start)
     moving = posed.then_still(posed.segments[-1, 1])
+    steps = posed.steps
     broken = not np.all(np.isfinite(posed.segments))
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
 
@@ -123,7 +124,7 @@ def scaled(
             return math.nan, Outcome.FAILED
         harder = moving * np.array([1.0, 1.0, stronger, 1.0, 1.0, stronger, stronger])
         moved = posed.law._replace(eta=min(livelier * posed.law.eta, 1.0))
-        march = MARCH.few(1, posed.steps)
+        march = MARCH.few(1, steps)
         end = march(moved, accuracy(TOLERANCE), harder, posed.start, 0.0, notes, workspace())
         return end.peak, OUTCOMES[end.outcome]
 

@@ -278,7 +278,7 @@ def figures(tables: Tables) -> Figures:
     """Draw the ranking of the blocks."""
     from studies.drawing.blocks import draw_blocks, draw_fragility
 
-    rows, title = tables["blocks"], finding(tables).partition("\n")[0].removesuffix(".")
+    rows, title = tables["blocks"], "The factors on a record that overturn each block"
     drawn = {"blocks": draw_blocks(ranked(rows), sorted(set(rows["scale"])), title)}
     if "fragility" in tables:
         drawn["fragility"] = draw_fragility(tables["fragility"], ranked(rows))
@@ -297,8 +297,8 @@ STUDY = Study(
     figures=figures,
     texts=("name", "record", "record_digest", "source", "outcome", "no_margin"),
     captions={
-        "blocks": "Blocks ranked by the factor on a record that overturns them first; a line from "
-        "the factor that lifts a block to the one that overturns it.",
+        "blocks": "Blocks ranked by the factor on a record that overturns them first, "
+        "each a line as the key says.",
         "fragility": "Part of the records that overturn a block of the list, by their factor.",
     },
 )

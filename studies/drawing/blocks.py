@@ -61,7 +61,7 @@ def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Fig
         axes.grid(axis="y", alpha=0.2)
         axes.set_title(drawable(title) + kept, fontsize=10, wrap=True)
         handles = [key_of[place] for place in sorted(key_of)]
-        key(drawing, [*handles, asked], min(len(handles) + 1, 4), 10.0)
+        key(drawing, [*handles, asked], min(len(handles) + 1, 2 if many else 4), 10.0)
     return drawing
 
 
@@ -69,9 +69,9 @@ def _draw_spread(axes: Axes, lines: pd.DataFrame, level: int) -> dict[int, Line2
     """Draw the factors that overturn a block under many records; return what the key says."""
     margins, colour = lines["margin"].dropna(), look_at(0)[0]
     finite = np.sort(margins[np.isfinite(margins)])
-    left, none = len(lines) - len(margins), len(margins) - len(finite)
-    texts = [f"slides first or no result: {left} of {len(lines)}"] * bool(left)
-    texts += [f"none found: {none} of {len(lines)}"] * bool(none)
+    counts = lines["no_margin"].value_counts().drop("", errors="ignore").to_dict()
+    counts |= {"none found": len(margins) - len(finite)}
+    texts = [f"{word}: {count} of {len(lines)}" for word, count in counts.items() if count]
     axes.annotate("; ".join(texts) + " ", (1.0, level - 0.3), xycoords=("axes fraction", "data"),
                   ha="right", va="center", fontsize=6, color="#666666")  # fmt: skip
     looks: tuple[dict[str, Any], ...] = (
