@@ -4,10 +4,11 @@ import os
 
 import numpy as np
 import pytest
-from commanding import BLOCK, compared, python, refused
+from commanding import BLOCK, ROOT, compared, python, refused
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from records import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, SAMPLES, TITLE, write_record
+from scipy.constants import g as standard_gravity
 from scipy.signal import detrend
 
 from analytic import GRAVITY, Record, RigidBlock, simulate
@@ -233,6 +234,8 @@ def test_the_g_of_a_record_is_that_of_the_blocks(tmp_path):
     path = tmp_path / "record.csv"
     path.write_text("time_s,acceleration_g\n0,0\n0.1,1\n0.2,0\n")
     assert read_record(path, None).peak == GRAVITY == RigidBlock(width=1.0, height=2.0).gravity
+    guide = (ROOT / "studies" / "GUIDE.md").read_text()
+    assert f"{100.0 * (GRAVITY / standard_gravity - 1.0):.3f} % more" in guide
 
 
 GOOD = AT2["series"]
