@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
+
+from engines.registry import OWN
 
 if TYPE_CHECKING:
     from studies.kit.study import Study, Tables
@@ -18,7 +20,8 @@ if TYPE_CHECKING:
 class Part:
     """A folder of results, and the command that fills it, with its further arguments.
 
-    It has a title where one study fills several folders; `weaker` is what its quick form lacks.
+    It has a title where one study fills several folders; `weaker` is what its quick form lacks,
+    and `published` are the arguments of the published run, where they are others than `full`.
     """
 
     folder: str
@@ -27,6 +30,7 @@ class Part:
     always: tuple[str, ...] = ()
     quick: tuple[str, ...] = ("--quick",)
     full: tuple[str, ...] = ()
+    published: tuple[str, ...] = ()
     weaker: str = ""
 
     @cached_property
@@ -42,6 +46,11 @@ class Part:
     def command(self, full: bool) -> str:
         """Return the whole command line."""
         return " ".join(["rocking", *self.words("DIR", full)])
+
+    @property
+    def published_command(self) -> str:
+        """The whole command line that makes what is published, with every engine."""
+        return replace(self, full=self.published or self.full).command(full=True)
 
     def found(self, tables: Tables, full: bool) -> dict[str, Any]:
         """Return what every page says of its tables."""
@@ -84,24 +93,47 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part("linearizations", "linearizations", quick=()),
     ),
     "Random cases": (
-        Part("validate", "validate"),
+        Part(
+            *("validate", "validate"),
+            published=("--sources", "engines", "physx:default", "physx:recommended", "physx:tuned"),
+        ),
         Part(
             *("estimate", "validate", "How far off is a peak where there is no exact solution?"),
-            always=("--halves", "--sources", "core", "core:tuned", "core:default"),
+            always=("--halves",),
+            quick=("--quick", "--sources", "core", "core:tuned", "core:default"),
+            full=("--sources", "core", "core:tuned", "core:default"),
+            published=("--sources", "engines", "engines:tuned", "engines:default"),
             weaker="So few random cases that no factor has an upper end.",
         ),
     ),
-    "Error against run time": (Part("precision", "precision"),),
+    "Error against run time": (
+        Part(
+            *("precision", "precision"),
+            published=(
+                *("--sources", "exact", "rk45", "dop853", "radau", "lsoda", "rk4"),
+                *("average-acceleration", "housner", "modified", "onset-matched", "engines"),
+            ),
+        ),
+    ),
     "Contact models": (
         Part("advice", "advise", quick=("--quick", "--engines", "pybullet", "mujoco")),
-        Part("contact", "contact"),
+        Part("contact", "contact", published=("--engines", *OWN)),
         Part(
             *("contact-frames", "contact", "What does each setting cost and buy on frames?"),
             always=("--scene", "frame"),
+            published=("--engines", "pybullet", "mujoco", "pymunk", "box2d", "dart"),
         ),
         Part("restitution", "restitution", quick=()),
     ),
-    "Stiff and extreme cases": (Part("stability", "stability"),),
+    "Stiff and extreme cases": (
+        Part(
+            *("stability", "stability"),
+            published=(
+                *("--sources", "exact", "rk4", "average-acceleration", "dop853", "radau"),
+                *("engines", "engines:tuned", "engines:recommended", "engines:default"),
+            ),
+        ),
+    ),
     "Overturning": (
         Part("overturning", "overturning"),
         Part(
@@ -111,7 +143,15 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
             quick=("--quick", "--sources", "core:default"),
         ),
     ),
-    "Other scenes": (Part("scenes", "scenes"),),
+    "Other scenes": (
+        Part(
+            *("scenes", "scenes"),
+            published=(
+                *("--sources", "engines:default", "engines:recommended"),
+                *("engines:tuned", "engines"),
+            ),
+        ),
+    ),
 }
 """Title of a chapter -> its parts."""
 PARTS = tuple(part for parts in CHAPTERS.values() for part in parts)

@@ -22,7 +22,7 @@ from studies.kit.jobs import Job, Question, ask
 from studies.kit.say import capital, duration, listed, part, signed
 from studies.kit.store import check, versions, write_record
 from studies.kit.tables import read_table, tables_of, write_table, write_text
-from studies.measures.costs import OUTDATED, RETIRED, STEPPED
+from studies.measures.costs import RETIRED, STEPPED
 from studies.measures.history import samples
 from studies.measures.presets import engine_of, in_words
 from studies.measures.published import dictionary
@@ -138,7 +138,7 @@ def pages(root: Path) -> dict[Path, str]:
         "chapters": {title: parts for title, parts in chapters.items() if parts},
         **{"made": facts.made(published), "presets": facts.presets(published)},
         "moving": moving(published),
-        **{"OUTDATED": OUTDATED, "RETIRED": RETIRED, "STEPPED": STEPPED, "TROUBLES": TROUBLES},
+        **{"RETIRED": RETIRED, "STEPPED": STEPPED, "TROUBLES": TROUBLES},
         **{"WORDS": WORDS, "MEANINGS": MEANINGS, "REST_S": REST_S},
     }
     return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {
@@ -149,4 +149,5 @@ def pages(root: Path) -> dict[Path, str]:
 def _told(one: Part, folder: Path) -> dict[str, Any]:
     """Return what the pages say of a part, and its pictures."""
     pictures = [(it.name, one.study.caption_of(it.stem)) for it in sorted(folder.glob("*.png"))]
-    return {**one.found(one.study.read(folder), full=True), "pictures": pictures}
+    found = one.found(one.study.read(folder), full=True)
+    return {**found, "command": one.published_command, "pictures": pictures}
