@@ -178,8 +178,7 @@ def made(published: Path) -> dict[str, str]:
     known = [name for name in packages if versions[name] != NOT_INSTALLED]
     return {
         "engines": listed([f"{name} {versions[name]}" for name in known]),
-        "machine": f"{sweep['machine']['cpu'].removesuffix(' Processor')}, "
-        f"{sweep['machine']['cores']} cores",
+        "machine": f"{sweep['machine']['cpu']}, {sweep['machine']['cores']} cores",
         "date": sweep["runs"][-1]["start"][:10],
         "sweep": lasts(sweep, *others),
     }
