@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from scipy.stats import norm
 
 from analytic.motion import FloatArray
 
@@ -64,9 +63,11 @@ def _fit(margins: FloatArray, lifts: pd.Series) -> dict[str, float]:
 def lognormal(logs: FloatArray, beyond: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the mean and spread of logarithms of greatest likelihood, along the last axis.
 
-    Where `beyond`, a value is only known to be larger: it is put at its expectation, again and
+    Where `beyond`, a value is only known to be larger: its expectation stands for it, again and
     again (Dempster, Laird and Rubin 1977).
     """
+    from scipy.stats import norm  # no help waits for it
+
     mean, spread = logs.mean(-1, keepdims=True), logs.std(-1, keepdims=True)
     for _ in range(200 if beyond.any() else 0):
         scale = np.maximum(spread, 1e-12)

@@ -48,9 +48,8 @@ class Part:
     @property
     def published_command(self) -> str:
         """The whole command line that makes what is published, with every engine."""
-        return replace(self, full=tuple((self.published or " ".join(self.full)).split())).command(
-            True
-        )
+        words = self.published.split() or self.full
+        return replace(self, full=tuple(words)).command(full=True)
 
     def found(self, tables: Tables, full: bool) -> dict[str, Any]:
         """Return what every page says of its tables."""
