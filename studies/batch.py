@@ -93,7 +93,8 @@ def tabulate(rows: pd.DataFrame) -> Tables:
             line |= _off(mine, exact_peaks()[numbers], "")
             line |= {} if other is None else _off(mine, other[numbers], "c_")
         lines.append(line)
-    batch, best = pd.DataFrame(lines), []
+    batch = pd.DataFrame(lines)
+    best: list[dict[Any, Any]] = []
     for worlds, group in batch.groupby(["backend", "device", "worlds"], sort=False):
         for target in TARGETS:
             kept = group[group["median_error"] <= target].nlargest(1, "cases_per_s")
