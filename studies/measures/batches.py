@@ -106,7 +106,7 @@ def spread(found: FloatArray, first: FloatArray) -> Row:
     kinds = (np.isnan(found) != np.isnan(first)) | (np.isinf(found) != np.isinf(first))
     with np.errstate(invalid="ignore", divide="ignore"):
         apart = np.abs(found / first - 1.0)
-    largest = float(np.max(apart, initial=0.0, where=np.isfinite(apart)))
+    largest = float(np.max(apart, initial=0.0, where=np.isfinite(found * first * apart)))
     return dict(zip(SPREAD, (bits.sum(), kinds.any(axis=0).sum(), largest), strict=True))
 
 
