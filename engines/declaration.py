@@ -57,11 +57,11 @@ AT_REST = "default-at-rest"
 RECOMMENDED = "recommended"
 """The library as its documentation, or who maintains it, recommends it for accurate contact."""
 
-UNTUNED = ("default", AT_REST, RECOMMENDED)
-"""Names of the presets that are the library's own."""
-
 PASTED = "pasted"
 """The library's own ways, but for a few lines to paste: a free body in space on a floor at rest."""
+
+UNTUNED = ("default", AT_REST, RECOMMENDED, PASTED)
+"""Names of the presets that are the library's own, or nearly."""
 
 REST_S = 0.2
 """For so long [s] the ground is at rest in these before the motion, in equal steps: a body that was

@@ -26,7 +26,7 @@ MISSED = {
     Miss.MIRROR: (
         *("pymunk:default", "pymunk:default-at-rest", "pymunk:recommended"),
         *("box2d:default", "box2d:default-at-rest", "box2d:recommended"),
-        *("rapier:default", "rapier:default-at-rest", "rapier:recommended"),
+        *("rapier:default", "rapier:default-at-rest", "rapier:recommended", "rapier:pasted"),
         *("physx:default", "physx:default-at-rest", "drake:default"),
     ),
     Miss.PEAK: (

@@ -20,7 +20,7 @@ SPRINGS: Mapping[str, Callable[[float, float], Mapping[str, float]]] = {
 }
 """Engine -> its settings of a critically damped contact of a time, which may depend on the step."""
 
-WITH_A_TIME = {("mujoco", preset) for preset in UNTUNED}
+WITH_A_TIME = {("mujoco", preset) for preset in UNTUNED[:3]}
 """Engines and presets whose contact has a time of its own."""
 MOST_FRICTION = {"pybullet": 10.0}
 """Engine -> the largest coefficient of friction that it takes, where that is bounded."""

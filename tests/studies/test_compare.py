@@ -38,7 +38,7 @@ def test_json_is_one_object_a_line_and_nothing_else():
     assert (done.returncode, done.stderr) == (0, "")
     rows = [json.loads(line, parse_constant=pytest.fail) for line in done.stdout.splitlines()]
     assert [row["source"] for row in rows] == sources
-    assert all(list(row) == FIELDS for row in rows)
+    assert all([name for name in row if name != "yaw_deg"] == FIELDS for row in rows)
     found = {row["source"]: row for row in rows}
     fallen, exact = found.pop("housner"), found["exact"]
     nothing = ("peak_ratio", "error", "impact_error")

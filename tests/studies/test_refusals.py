@@ -25,7 +25,7 @@ compare CASE --friction 1_0 | --friction is '1_0' | 0 or more
 compare CASE --tilt nan | --tilt is 'nan' | finite
 compare CASE --rate 1e-400 | --rate is '1e-400'; it must be a finite number, 0, or at least
 compare CASE --tilt 0,5 | --tilt is '0,5'; it must be a finite number, with a decimal point
-blocks comma.csv --record X.AT2 --out DIR | width is '0,5'; it must be from | with a decimal point
+blocks comma.csv --record X.AT2 --out DIR | height is 'x'; it must be from
 compare CASE --jobs 0 | --jobs is '0' | positive whole number
 compare CASE --half-cycles 1.5 | --half-cycles is '1.5' | whole
 compare CASE --dt 0 --sources rk4 | --dt is '0'; it must be a positive
@@ -90,7 +90,7 @@ compare CASE --baseline none | only with --record
 export CASE --out DIR --engine mujoco --record x | it may be given only without --record
 blocks list.csv --record X.AT2 ./X.AT2 --out DIR | --record names 'X.AT2' twice
 blocks list.csv --record list.csv --out DIR | --record is 'list.csv'
-blocks list.csv --record X.AT2 --units m/s2 --out DIR | it states g; --units must not be m/s2
+compare BLOCK --record X.AT2 --units m/s2 | it states g; --units must not be m/s2
 blocks list.csv --record still.csv --units g --out DIR | it is zero throughout, and must not be
 blocks list.csv --out DIR | --record requires an argument
 
@@ -177,7 +177,7 @@ def place(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "list.csv").write_text("name,width,height\nA,0.5,1.5\n")
     (tmp_path / "X.AT2").write_text(AT2["series"])
-    (tmp_path / "comma.csv").write_text("name;width;height\nA;0,5;1,5\n")
+    (tmp_path / "comma.csv").write_text("name;width;height\nA;0,5;x\n")
     (tmp_path / "still.csv").write_text("time_s,acceleration\n0,0\n0.1,0\n0.2,0\n")
     return tmp_path
 
