@@ -190,7 +190,7 @@ def worse(before: Line, after: Line) -> list[str]:
     """Say by how much pasted lines are no better: in the median, the largest error, outcomes."""
     columns = {"median_error": "the typical error", "max_error": "the largest error"}
     said = [
-        f"{words} goes from {part(before[name])} to {part(after[name])}"
+        f"{words} goes from {100 * before[name]:.3g} % to {100 * after[name]:.3g} %"
         for name, words in columns.items()
         if not after[name] < before[name]
     ]
@@ -243,7 +243,8 @@ def pasted_lines(engine: str, block: RigidBlock, dt_s: float, friction: float) -
         options = {"friction": friction, "step": dt_s * block.p}
         use = declared.use(scene_of(block, pulse, preset, **options))
         text = "\n".join(declared.script(use.scene, use.settings, use.dt_s).settings)
-        found.append(re.sub(r"\n +", " ", text).split("\n"))
+        text = re.sub(r"\n +", " ", text)
+        found.append(re.sub(r" mass=[0-9.]+,", "", text).split("\n"))  # a reader's has its own
     return [line for line in found[1] if line not in found[0]]
 
 
@@ -254,7 +255,8 @@ def screen(engine: str, block: RigidBlock, dt_s: float, friction: float) -> list
     advice = advice[advice["engine"] == engine]
     below = ["No published table says what that is worth."]
     if len(advice):
-        below = [f"{advice['cases'].max()} random boxes at a friction of {FRICTION:g}:"]
+        boxes = f"{advice['cases'].max()} random boxes, friction {FRICTION:g}"
+        below = [f"{boxes}; errors of the {advice['survivors'].max()} survivors with S < 10:"]
         below += worth(advice).splitlines()
         below += _filled("NOT ADVISED", unadvised(advice).get(engine, ""))
         below += _filled("Fails", fails(advice))

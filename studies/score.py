@@ -26,9 +26,9 @@ from studies.kit.cluster import place_of
 from studies.kit.foreign import apart
 from studies.kit.jobs import Job, Question, Row, answer, unanswered
 from studies.kit.options import Running
-from studies.kit.run import run
+from studies.kit.run import makers_of, run
 from studies.kit.say import duration, in_columns, one_line, out_of, part, say
-from studies.kit.store import FolderError, check, engines_of, provenance_of
+from studies.kit.store import FolderError, Store, check, engines_of, provenance_of
 from studies.kit.study import Figures, Study, Tables
 from studies.kit.tables import write_text
 from studies.measures import world
@@ -285,6 +285,8 @@ def command(
     # what cannot be compared with it is refused now, and not after the last run
     earlier = None if against is None else read(against, engine_of(name))
     asked = jobs([name], quick)
+    with Store(out, STUDY.name) as store:  # a folder of another engine is refused at once
+        store.kept({job.key: job for job in asked}, makers_of(asked, measure))
     check_model(engine, [job for job in asked if job.labels["part"] == MODEL], running)
     code = STUDY.carry_out(out, asked, running, engine=name, quick=quick)
     write_page(out)

@@ -10,7 +10,7 @@ from analytic import simulate
 from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse
 from analytic.response import Outcome
-from engines.declaration import UNTUNED
+from engines.declaration import AT_REST, RECOMMENDED
 from engines.scene import free_rocking_window
 from studies.sources.registry import resolve
 
@@ -20,7 +20,7 @@ SPRINGS: Mapping[str, Callable[[float, float], Mapping[str, float]]] = {
 }
 """Engine -> its settings of a critically damped contact of a time, which may depend on the step."""
 
-WITH_A_TIME = {("mujoco", preset) for preset in UNTUNED[:3]}
+WITH_A_TIME = {("mujoco", preset) for preset in ("default", AT_REST, RECOMMENDED)}
 """Engines and presets whose contact has a time of its own."""
 MOST_FRICTION = {"pybullet": 10.0}
 """Engine -> the largest coefficient of friction that it takes, where that is bounded."""

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 class Part:
     """A folder of results, and the command that fills it, with its further arguments.
 
-    It has a title where one study fills several folders; `weaker` is what its quick form lacks,
-    and `published` are the arguments of the published run, where they are others than `full`.
+    It has a title where one study fills several folders; `weaker` is what its quick form lacks.
     """
 
     folder: str
@@ -28,7 +27,6 @@ class Part:
     always: tuple[str, ...] = ()
     quick: tuple[str, ...] = ("--quick",)
     full: tuple[str, ...] = ()
-    published: str = ""
     weaker: str = ""
 
     @cached_property
@@ -48,8 +46,8 @@ class Part:
     @property
     def published_command(self) -> str:
         """The whole command line that makes what is published, with every engine."""
-        words = self.published.split() or self.full
-        return replace(self, full=tuple(words)).command(full=True)
+        words = PUBLISHED_WITH.get(self.folder, " ".join(self.full))
+        return replace(self, full=tuple(words.split())).command(full=True)
 
     def found(self, tables: Tables, full: bool) -> dict[str, Any]:
         """Return what every page says of its tables."""
@@ -69,13 +67,18 @@ def statements(tables: Tables) -> list[tuple[bool, str]]:
     return [(holds == "True", words) for holds, words in tested if holds in ("True", "False")]
 
 
-EVERY, OTHERS = "--sources engines", "rapier drake newton physx"
-STACKING = "pybullet mujoco pymunk box2d dart"
-PHYSX = "physx:default physx:recommended physx:tuned"
-PRESETS = "engines engines:tuned engines:recommended engines:default"
-REFERENCES = "--sources exact rk4 average-acceleration dop853 radau"
-METHODS = "exact rk45 dop853 radau lsoda rk4 average-acceleration housner modified onset-matched"
-"""Sources of published runs; engines that hold bodies on others."""
+PUBLISHED_WITH = {
+    "validate": "--sources engines physx:default physx:recommended physx:tuned",
+    "estimate": "--sources engines engines:tuned engines:default",
+    "precision": "--sources exact rk45 dop853 radau lsoda rk4 average-acceleration housner "
+    "modified onset-matched engines",
+    "contact": "--engines pybullet mujoco pymunk box2d dart rapier drake newton physx",
+    "contact-frames": "--engines pybullet mujoco pymunk box2d dart",
+    "stability": "--sources exact rk4 average-acceleration dop853 radau engines engines:tuned "
+    "engines:recommended engines:default",
+    "scenes": "--sources engines engines:tuned engines:recommended engines:default",
+}
+"""Folder -> arguments of the published run, where they are others than those of a full one."""
 CHAPTERS: dict[str, tuple[Part, ...]] = {
     "The paper's cases": (
         Part(
@@ -99,32 +102,26 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part("linearizations", "linearizations", quick=()),
     ),
     "Random cases": (
-        Part("validate", "validate", published=f"{EVERY} {PHYSX}"),
+        Part("validate", "validate"),
         Part(
             *("estimate", "validate", "How far off is a peak where there is no exact solution?"),
             always=("--halves",),
             quick=("--quick", "--sources", "core", "core:tuned", "core:default"),
             full=("--sources", "core", "core:tuned", "core:default"),
-            published=f"{EVERY} engines:tuned engines:default",
             weaker="So few random cases that no factor has an upper end.",
         ),
     ),
-    "Error against run time": (
-        Part("precision", "precision", published=f"--sources {METHODS} engines"),
-    ),
+    "Error against run time": (Part("precision", "precision"),),
     "Contact models": (
         Part("advice", "advise", quick=("--quick", "--engines", "pybullet", "mujoco")),
-        Part("contact", "contact", published=f"--engines {STACKING} {OTHERS}"),
+        Part("contact", "contact"),
         Part(
             *("contact-frames", "contact", "What does each setting cost and buy on frames?"),
             always=("--scene", "frame"),
-            published=f"--engines {STACKING}",
         ),
         Part("restitution", "restitution", quick=()),
     ),
-    "Stiff and extreme cases": (
-        Part("stability", "stability", published=f"{REFERENCES} {PRESETS}"),
-    ),
+    "Stiff and extreme cases": (Part("stability", "stability"),),
     "Overturning": (
         Part("overturning", "overturning"),
         Part(
@@ -134,7 +131,7 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
             quick=("--quick", "--sources", "core:default"),
         ),
     ),
-    "Other scenes": (Part("scenes", "scenes", published=f"--sources {PRESETS}"),),
+    "Other scenes": (Part("scenes", "scenes"),),
 }
 """Title of a chapter -> its parts."""
 PARTS = tuple(part for parts in CHAPTERS.values() for part in parts)

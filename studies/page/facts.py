@@ -43,12 +43,6 @@ def presets(published: Path) -> pd.DataFrame:
     return lines if lines.empty else lines.drop_duplicates("source", ignore_index=True)
 
 
-def models(published: Path) -> dict[str, Line]:
-    """Return the line of each model over the paper's cases."""
-    lines = over_all(table_in(published / "sweep", "summary"))
-    return {str(line["source"]): line for line in lines.to_dict("records")}
-
-
 def by_engine(published: Path) -> list[list[str]]:
     """Return the cells of the README's table, a row for each engine.
 
@@ -136,6 +130,7 @@ def pasted(published: Path) -> list[dict[str, Any]]:
         found.append(
             {
                 **{"engine": engine, "place": place, "title": title, "boxes": both[0]["cases"]},
+                "calm": both[1]["survivors"],
                 "own": all(each["engine"] != engine for each in found),
                 "cells": [f"[{title}](#{place})", *map(" → ".join, zip(*cells, strict=True))],
                 "text": "\n".join(row for line in mine["literal"] for row in broken(line)),

@@ -26,7 +26,7 @@ from studies.measures.costs import RETIRED, STEPPED
 from studies.measures.history import samples
 from studies.measures.presets import engine_of, in_words
 from studies.measures.published import dictionary
-from studies.measures.wrongness import MEANINGS, WORDS, in_kinds
+from studies.measures.wrongness import MEANINGS, WORDS
 from studies.page import facts
 from studies.page.chapters import CHAPTERS, Part, published_parts
 from studies.sources.registry import core_sources
@@ -126,7 +126,7 @@ def pages(root: Path) -> dict[Path, str]:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    filters = (capital, duration, facts.once, in_kinds, in_words, part, row)
+    filters = (capital, duration, facts.once, in_words, part, row)
     environment.filters |= {each.__name__: each for each in filters}
     chapters = {
         title: [_told(one, published / one.folder) for one in parts if one in known]

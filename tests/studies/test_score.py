@@ -98,8 +98,7 @@ def test_the_page_the_result_and_what_moved_since(alone, few, tmp_path, capsys):
     asked[1] = "my_engine"  # it is known by now
     assert run([*asked, "--against", str(then)]) == 0
     assert "Since rocking" in capsys.readouterr().out.splitlines()[-1]
-    assert run(["score", "pymunk", "--quick", "--out", str(out)]) == 2  # after its model check
-    assert "my_engine" in capsys.readouterr().err.splitlines()[-1]
+    refused(capsys, ["score", "pymunk", "--quick", "--out", out], "my_engine")
 
 
 def results(peaks):
