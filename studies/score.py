@@ -285,8 +285,9 @@ def command(
     # what cannot be compared with it is refused now, and not after the last run
     earlier = None if against is None else read(against, engine_of(name))
     asked = jobs([name], quick)
-    with Store(out, STUDY.name) as store:  # a folder of another engine is refused at once
-        store.kept({job.key: job for job in asked}, makers_of(asked, measure))
+    if out.is_dir():  # one of another engine is refused at once
+        with Store(out, STUDY.name) as store:
+            store.kept({job.key: job for job in asked}, makers_of(asked, measure))
     check_model(engine, [job for job in asked if job.labels["part"] == MODEL], running)
     code = STUDY.carry_out(out, asked, running, engine=name, quick=quick)
     write_page(out)
