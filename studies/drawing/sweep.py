@@ -41,7 +41,7 @@ def draw_sweep(rows: pd.DataFrame) -> Figure:
             _errors(axes, mine[mine["source"] != "exact"])
             axes.set_xlabel("frequency of the pulse  ω/p  [–]")
     for axes in grid[:: len(widths)]:
-        axes.set(ylim=(0.0, _level(len(sources) - 0.7)), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0],
+        axes.set(ylim=(0.0, _level(len(sources))), yticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0],
                  ylabel="largest |θ|/θcr  [–]", xlim=(0.0, 4.1))  # fmt: skip
     errors = grid[-len(widths)]
     errors.set(
