@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.checks import MOST_HALF_CYCLES, whole
-from analytic.kernels.excursions import BROKEN, OVERTURNED, TOO_LONG, End, march, workspace
+from analytic.kernels.excursions import BROKEN, OVERTURNED, TOO_LONG, march, workspace
 from analytic.kernels.forms import Kernel
 from analytic.kernels.law import UPRIGHT, FloatArray, Law, Notes
 from analytic.kernels.taylor import TOLERANCE, Accuracy, accuracy
@@ -103,7 +103,8 @@ def solve_pulses(
 ) -> FloatArray:
     """Return the ends of cases; all is as in `solve_cases` or `march`, pulse (2, 7) is zero."""
     count = len(cases[0])
-    ends = np.empty((8, count))
+    ends = np.zeros((8, count))
+    ends[0, :] = BROKEN
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
     for i in range(count):
         k, saddle, factor = constants[0][i], constants[1][i], constants[2][i]
@@ -112,12 +113,12 @@ def solve_pulses(
         over = cases[3][i] * math.pi / omega
         pulse[0][1], pulse[0][2], pulse[0][3] = over, amplitude, omega
         pulse[1][0] = pulse[1][1] = over
-        end = End(BROKEN, 0.0, 0, 0, 0, 0.0, 0.0, 0.0)
         if abs(over) < math.inf:
-            end = march(law, exactly, pulse, UPRIGHT, above, notes, work)
-        ends[0, i], ends[1, i], ends[2, i] = end.outcome, end.peak, end.steps
-        ends[3, i], ends[4, i], ends[5, i] = end.impacts, end.events, end.time
-        ends[6, i], ends[7, i] = end.y, end.v
+            outcome, peak, steps, impacts, events, tau, y, v = march(
+                law, exactly, pulse, UPRIGHT, above, notes, work
+            )
+            ends[0, i], ends[1, i], ends[2, i], ends[3, i] = outcome, peak, steps, impacts
+            ends[4, i], ends[5, i], ends[6, i], ends[7, i] = events, tau, y, v
     return ends
 
 

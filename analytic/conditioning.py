@@ -115,7 +115,7 @@ def scaled(
     """
     posed = pose(block, motion, model, start)
     moving = posed.then_still(posed.segments[-1, 1])
-    steps = posed.steps
+    steps, exactly = posed.steps, accuracy(TOLERANCE)
     broken = not np.all(np.isfinite(posed.segments))
     notes = Notes(np.empty(0), np.empty((2, 0)), np.empty((0, 4)), np.empty(0))
 
@@ -125,8 +125,8 @@ def scaled(
         harder = moving * np.array([1.0, 1.0, stronger, 1.0, 1.0, stronger, stronger])
         moved = posed.law._replace(eta=min(livelier * posed.law.eta, 1.0))
         march = MARCH.few(1, steps)
-        end = march(moved, accuracy(TOLERANCE), harder, posed.start, 0.0, notes, workspace())
-        return end.peak, OUTCOMES[end.outcome]
+        found, peak, *_ = march(moved, exactly, harder, posed.start, 0.0, notes, workspace())
+        return peak, OUTCOMES[found]
 
     return solve
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from analytic.block import RigidBlock
 from analytic.checks import within
 from analytic.frame import Rocker
-from analytic.kernels.excursions import BROKEN, MARCH, TOO_LONG, End, workspace
+from analytic.kernels.excursions import BROKEN, MARCH, TOO_LONG, End, Ended, workspace
 from analytic.kernels.forces import NOTHING_YET
 from analytic.kernels.law import IMPACT, RESTED, UPLIFT, Notes
 from analytic.kernels.taylor import TOLERANCE, accuracy
@@ -111,7 +111,7 @@ def simulate(
     moving = posed.then_still(max(until, posed.segments[-1, 1]))
     march = MARCH.few(1, posed.steps)
 
-    def solve(notes: Notes) -> End:
+    def solve(notes: Notes) -> Ended:
         return march(law, exactly, moving, begin, 0.0, notes, workspace())
 
     watched = isinstance(block, RigidBlock) and not law.linear
@@ -119,7 +119,7 @@ def simulate(
 
 
 def as_response(
-    block: Rocker, posed: Posed, solve: Callable[[Notes], End], recorded: bool, watched: bool
+    block: Rocker, posed: Posed, solve: Callable[[Notes], Ended], recorded: bool, watched: bool
 ) -> Response:
     """Run a march, given where to note, and turn what it notes into a response in seconds.
 
@@ -133,7 +133,7 @@ def as_response(
     while True:
         limits = np.array(NOTHING_YET) if watched else np.empty(0)
         notes = Notes(sampled * block.p, samples, log, limits)
-        end = solve(notes)
+        end = End(*solve(notes))
         if end.events <= len(log):
             break
         log = np.empty((end.events, 4))

@@ -21,7 +21,7 @@ from analytic.kernels.excursions import (
     ROCKED,
     TOO_LONG,
     VANISHING,
-    End,
+    Ended,
 )
 from analytic.kernels.forms import Kernel
 from analytic.kernels.law import (
@@ -116,7 +116,7 @@ def integrate(
     moving = posed.then_still(posed.until if followed else math.inf)
     tread = TREAD.few(1, posed.until / step / SOME)
 
-    def solve(notes: Notes) -> End:
+    def solve(notes: Notes) -> Ended:
         return tread(posed.law, moving, posed.start, followed, notes, solver)
 
     return as_response(block, posed, solve, times is not None, watched=False)
@@ -245,7 +245,7 @@ def next_side(
 
 def tread(
     law: Law, moving: FloatArray, start: Start, followed: bool, notes: Notes, solver: Solver
-) -> End:
+) -> Ended:
     """Follow one response with a fixed step; arguments as for `excursions.march`.
 
     It ends with the last segment if it is to be `followed`, else when the peak is decided.
@@ -261,21 +261,21 @@ def tread(
             n = sample_still(notes, min(rise, last), n, 0.0, 0.0)
             if side == 0.0:
                 outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
-                return End(outcome, peak, steps, impacts, events, last, 0.0, 0.0)
+                return outcome, peak, steps, impacts, events, last, 0.0, 0.0
             tau, h = rise, solver.step
             events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
         j = segment_at(moving, j, tau)
         if followed and tau >= last:
             ahead = free_peak(law, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
-            return End(outcome, max(peak, ahead), steps, impacts, events, tau, y, v)
+            return outcome, max(peak, ahead), steps, impacts, events, tau, y, v
         steps += 1
         segment, begin = moving[j], State(side, tau, 0, y, v)
         landed = tau + h >= segment[1]
         length = segment[1] - tau if landed else h
         path = take_step(law, segment, begin, length, solver.rk4)
         if not (abs(path.end) + abs(path.rate) < math.inf and length > tau * VANISHING):
-            return End(BROKEN, peak, steps, impacts, events, tau, y, v)
+            return BROKEN, peak, steps, impacts, events, tau, y, v
         if path.end < -solver.tolerance and length > 1e-15:
             h = FRACTION * length
             continue
@@ -286,7 +286,7 @@ def tread(
         y, v = path.end, path.rate
         found = verdict(law, path, not followed and tau > ended)
         if found != UNDECIDED:
-            return End(found, peak, steps, impacts, events, tau, y, v)
+            return found, peak, steps, impacts, events, tau, y, v
         h = solver.step if v > 0.0 else h
         if y <= solver.tolerance and v < 0.0:
             impacts += 1
@@ -297,7 +297,7 @@ def tread(
             if side == 0.0:
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
-    return End(TOO_LONG, peak, steps, impacts, events, tau, y, v)
+    return TOO_LONG, peak, steps, impacts, events, tau, y, v
 
 
 TREAD = Kernel(tread)

@@ -5,7 +5,7 @@ bracketed by its series). Symbols and units are those of `analytic.kernels.law`.
 """
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -57,6 +57,11 @@ FAR = 1e3
 a root much closer to the step's begin than its end could be overlooked."""
 LINEAR_STEP = 2.5
 """Linear step in units of the shortest time scale; its series is exact to 1e-16."""
+
+
+Ended: TypeAlias = tuple[int, float, int, int, int, float, float, float]
+"""The fields of an `End`, as compiled code returns them: to make a named tuple it would call
+Python, where an interruption may end the call; compiled code does not see that, and crashes."""
 
 
 class End(NamedTuple):
@@ -213,7 +218,7 @@ def march(
     above: float,
     notes: Notes,
     work: FloatArray,
-) -> End:
+) -> Ended:
     """Follow one response, to the end of the last segment, on which nothing moves.
 
     Outcome and peak of what comes after follow from energy. The accuracy is that of the exact
@@ -232,7 +237,7 @@ def march(
             watch_rest(limits, moving, resting, tau, rise)
             if side == 0.0:
                 outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
-                return End(outcome, peak, steps, impacts, events, last, 0.0, 0.0)
+                return outcome, peak, steps, impacts, events, last, 0.0, 0.0
             tau = rise
             events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
         j = segment_at(moving, j, tau)
@@ -241,18 +246,18 @@ def march(
             ahead = free_peak(law, y, v)
             watch_free(limits, law, y, v)
             outcome = OVERTURNED if ahead == math.inf else ROCKED
-            return End(outcome, max(peak, ahead), steps, impacts, events, last, y, v)
+            return outcome, max(peak, ahead), steps, impacts, events, last, y, v
         steps += 1
         segment, begin = moving[j], State(side, tau, lead, y, v)
         step = take_step(law, accuracy, segment, begin, peak, work)
         if step.kind == LOST:
-            return End(BROKEN, peak, steps, impacts, events, tau, y, v)
+            return BROKEN, peak, steps, impacts, events, tau, y, v
         n = sample_step(law, segment, begin, work[4], accuracy.order, step, notes, n)
         watch_step(limits, law, accuracy.order, step.h, step.x, work, step.y)
         tau, y, v, peak, lead = step.tau, step.y, step.v, step.peak, 0
         if step.kind == FALLEN:
             forget_fall(limits)
-            return End(OVERTURNED, peak, steps, impacts, events, tau, y, v)
+            return OVERTURNED, peak, steps, impacts, events, tau, y, v
         if step.kind == HIT:
             impacts += 1
             events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
@@ -263,7 +268,7 @@ def march(
                 watch_train(limits, law, turned, ground(moving, j, tau), v)
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
-    return End(TOO_LONG, peak, steps, impacts, events, tau, y, v)
+    return TOO_LONG, peak, steps, impacts, events, tau, y, v
 
 
 MARCH = Kernel(march)

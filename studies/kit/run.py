@@ -18,12 +18,11 @@ from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason, Response
 from engines.run.look import PACKAGE, compile_look
 from studies.cases.refusal import BadInputError
-from studies.kit.app import ENDING
 from studies.kit.identity import Maker, maker_of
 from studies.kit.jobs import Job, Row, ask, summary, unanswered
 from studies.kit.say import say
 from studies.kit.store import Store, labels_of
-from studies.kit.workers import Lost, answers, deferring
+from studies.kit.workers import Lost, answers
 
 FEW = 32
 """Jobs up to which to interpret takes less time than to load what is compiled."""
@@ -59,9 +58,7 @@ def local(
     for number in sorted({*range(len(jobs))}.difference(apart)):
         if many:
             _load(jobs[number])
-        with deferring(*ENDING):  # one that comes while compiled code is called makes it crash
-            row = measure(jobs[number])
-        yield number, row
+        yield number, measure(jobs[number])
     if not apart:
         return
     if many:

@@ -98,7 +98,8 @@ def test_answers_are_the_same(model, monkeypatch):
 
 
 AGAIN = """
-import sys
+import signal, sys
+from contextlib import suppress
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.kernels import forms
 
@@ -108,6 +109,12 @@ assert "numba" not in sys.modules
 many = simulate(block, pulse)
 assert "numba" in sys.modules
 assert few[0].peak_ratio == many.peak_ratio and few[0].impacts == many.impacts
+signal.signal(signal.SIGALRM, signal.default_int_handler)
+for number in range(100):  # interrupted anywhere, it is never made to crash
+    with suppress(KeyboardInterrupt):
+        signal.setitimer(signal.ITIMER_REAL, 1e-3 + 1e-5 * number)
+        while simulate(block, pulse):
+            pass
 """
 
 
@@ -117,8 +124,7 @@ def test_what_is_asked_again_and_again_is_compiled():
 
 
 def test_what_python_refuses_is_left_to_compiled_code():
-    kernel = forms.Kernel(lambda x, y: x / y)
-    assert kernel.python(1.0, 0.0) == math.inf
+    assert forms.Kernel(lambda x, y: x / y).python(1.0, 0.0) == math.inf
 
 
 KERNELS = {
@@ -211,7 +217,6 @@ def test_a_kernel_runs_where_the_disk_is_full(monkeypatch):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(caching.IndexDataCacheFile, "save", save)
-
     kernel = forms.Kernel(half)
     assert [kernel.compiled(2.0), kernel.compiled(3.0)] == [1.0, 1.5]
 
@@ -219,7 +224,6 @@ def test_a_kernel_runs_where_the_disk_is_full(monkeypatch):
 def test_who_waits_is_told_once_and_only_where_something_is_compiled(monkeypatch, tmp_path):
     told = []
     monkeypatch.setattr(forms, "kept_in", lambda _: tmp_path)
-
     for count in (1, 0):
         monkeypatch.setattr(forms.Kernel, "tell", told.append)
         assert forms.Kernel(half).compiled(2.0) == 1.0

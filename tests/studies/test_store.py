@@ -208,7 +208,6 @@ def stored(folder):
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """The folder of a run that was not ended."""
     folder = tmp_path_factory.mktemp("whole")
     assert python(*SWEEP, "--out", folder).returncode == 0
     return folder
