@@ -78,7 +78,7 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
         MODEL: [Job(labels={}, case=one, source=use) for use in looked_at],
         SWEEP: swept,
         STEPS: along,
-        EXTREMES: stability.matrix_jobs(uses, quick),
+        EXTREMES: stability.jobs(uses, quick),
         SCENES: [job for job in scenes.jobs(uses, quick) if job.labels["scene"] in known],
     }
     return [

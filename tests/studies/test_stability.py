@@ -1,4 +1,4 @@
-"""Extreme cases: their boundaries, the verdicts, the search for a step, the tables."""
+"""Extreme cases: their boundaries, the verdicts, the tables."""
 
 import math
 from dataclasses import replace
@@ -16,8 +16,6 @@ from studies.kit.run import lost_row, run
 from studies.kit.study import Study
 from studies.measures.history import energy, growth
 from studies.measures.verdicts import Verdict, judge
-from studies.sources.registry import resolve
-from studies.stability import FACTOR, LARGEST_STEP, SMALLEST_STEP, largest_good
 
 CASE = Extreme(name="plain", group="test")
 EXACT = simulate(CASE.block, CASE.motion)
@@ -25,14 +23,6 @@ EXACT = simulate(CASE.block, CASE.motion)
 
 def named(name):
     return next(case for case in extremes(False) if case.name == name)
-
-
-def rows_of(table, case, *sources):
-    jobs = stability.jobs(sources, table == "steps")
-    return run(
-        [it for it in jobs if it.labels["table"] == table and it.labels["case"] == case],
-        stability.measure,
-    )
 
 
 def test_cases_have_names_of_their_own_and_quick_ones_are_among_them():
@@ -119,36 +109,18 @@ def test_energy_that_grows_is_seen_and_one_that_falls_is_not():
         assert growth(block, motion, moved) == pytest.approx(expected, abs=2e-3)
 
 
-@pytest.mark.parametrize("limit", [2e-4, 3e-3, 0.011, 0.3])
-def test_edge_is_found_within_its_factor(limit):
-    found = largest_good(lambda step: step <= limit, FACTOR)
-    assert limit / FACTOR <= found <= limit
-    assert largest_good(lambda step: True, FACTOR) == LARGEST_STEP
-    assert math.isnan(largest_good(lambda step: step < SMALLEST_STEP, FACTOR))
-
-
-def test_largest_stable_step_has_the_right_outcome_and_the_next_has_not():
-    (row,) = rows_of("steps", "peak after an impact", "mujoco:tuned")
-    for factor, stable in ((1.0, True), (row["factor"], False)):
-        step = factor * row["largest_stable"]
-        found = resolve(row["source"]).call(CASE.block, CASE.motion, step=step)
-        assert (found.peak_ratio >= 0.1 * EXACT.peak_ratio) == stable
-
-
-@pytest.mark.parametrize("table", ["matrix", "steps"])
-def test_a_job_that_was_given_up_is_a_row_too(table):
-    job = next(it for it in stability.jobs(["rk4"], True) if it.labels["table"] == table)
+def test_a_job_that_was_given_up_is_a_row_too():
+    job = stability.jobs(["rk4"], True)[0]
     row = lost_row(stability.measure, job, Response.failure("no result within the time limit"))
     assert (row["outcome"], row["message"]) == ("failed", "no result within the time limit")
-    assert row.get("verdict", "no_answer") == "no_answer"
+    assert row["verdict"] == "no_answer"
 
 
 def test_tables_and_what_they_say():
-    rows = rows_of("matrix", "step 1/30 s", "rk4", "average-acceleration")
-    rows += rows_of("steps", "peak after an impact", "rk4")
-    tables = stability.tabulate(pd.DataFrame(rows))
+    jobs = stability.jobs(("rk4", "average-acceleration"), True)
+    asked = [job for job in jobs if job.labels["case"] == "step 1/30 s"]
+    tables = stability.tabulate(pd.DataFrame(run(asked, stability.measure)))
     assert tables["stability"]["verdict"].tolist() == ["good", "off"]
-    assert tables["steps"]["largest_stable"].tolist() == [rows[2]["largest_stable"]]
     assert "1 of 2" in stability.finding(tables)
     words = {
         "pybullet:default": ["off", "no_answer", "good", "invalid"],
