@@ -239,8 +239,8 @@ def figures(tables: Tables) -> Figures:
     return {"contact": draw_contact(left)} if len(left) else {}
 
 
-STUDY = Study(
-    name="contact",
+STUDY = Study.of(
+    globals(),
     question="What does each setting of a contact cost and buy?",
     help="""One factor of an engine's contact at a time: solver, geometry, friction, damping, ...
 
@@ -250,12 +250,6 @@ failure is an answer: the exit code is 1 only where a preset as it is fails at t
 contact.csv, variants.csv, own-steps.csv, findings.txt and contact.png.""",
     options=Options,
     quick="Fewer cases and twice the step: less than a minute on 2 cores.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if not row["factor"] and not row["own_step"]],
     texts=("factor", "level", "trap"),
     captions={

@@ -149,8 +149,8 @@ FIGURES = {
 }
 """Figure -> its title, and what the paper says about it."""
 
-STUDY = Study(
-    name="histories",
+STUDY = Study.of(
+    globals(),
     question="Does what the paper says about its time histories hold?",
     help="""The paper's time histories, figures 2, 4 and 5.
 
@@ -158,12 +158,6 @@ For each figure its samples, its drawing, and whether what the paper says about 
 few seconds. Writes histories.csv, findings.csv, findings.txt, and of each figure a table and a
 picture.""",
     options=Options,
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "figure": "Rotation over time, a line for each source, a panel for each block and pulse.",
         "figure-2": "Rotation over time, and below it the distance of each solver from the exact "

@@ -166,8 +166,8 @@ def conclusion(lines: pd.DataFrame) -> Finding:
     )
 
 
-STUDY = Study(
-    name="linearizations",
+STUDY = Study.of(
+    globals(),
     question="What in a linearization errs: onset, frequency or saddle?",
     help="""What in a linearization errs: onset, frequency and saddle, each changed alone.
 
@@ -175,12 +175,6 @@ All eight combinations of Housner's and the modified choices against the exact s
 paper's cases and on a wider grid. Takes half a minute. Writes
 linearizations.csv, slenderness.csv, findings.csv, findings.txt and a picture.""",
     texts=("changed",),
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "linearizations": "Median error of the peak over H/B, for eight linearizations on two "
         "grids: the colour tells the onset, the dash the frequency.",

@@ -278,8 +278,8 @@ def figures(tables: Tables) -> Figures:
     return drawn
 
 
-STUDY = Study(
-    name="overturning",
+STUDY = Study.of(
+    globals(),
     question="Which pulses overturn a block, and who predicts that wrongly?",
     help="""Overturning maps: which pulses overturn a block, after how many impacts.
 
@@ -289,12 +289,6 @@ by pulse, of two similar blocks: --sources engines:default.""",
     sources=("exact", "housner", "modified", "onset-matched"),
     options=Options,
     quick="A coarser map, and fewer pulses for engines.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     # on planes a failure of an engine is an answer
     needed=lambda rows: [row for row in rows if row["source"] in MODELS],
     rows="defaults",

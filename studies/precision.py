@@ -312,8 +312,8 @@ def figures(tables: Tables) -> Figures:
     return {"precision": draw_precision(tables["work-precision"])}
 
 
-STUDY = Study(
-    name="precision",
+STUDY = Study.of(
+    globals(),
     question="Which error does which run time buy, and what is not needed?",
     help="""Error against run time: every method along its own setting, on the same cases.
 
@@ -325,12 +325,6 @@ base, a recorded history, ... A compiled loop over mj_step takes MuJoCo's steps;
 others. With more than one of --jobs they slow each other down. It takes about 10 minutes.""",
     sources=(*dict.fromkeys(method.source for method in PLAIN.values()), *core_sources()),
     quick="Fewer cases and settings, shorter timing: some one and a half minutes.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if row["table"] == ALONG],
     captions={
         "precision": "Median error of the peak over run time, from coarse to fine: models and "

@@ -229,8 +229,8 @@ def figures(tables: Tables) -> Figures:
     return {"strikes": draw_strikes(tables["restitution"], plain, best)}
 
 
-STUDY = Study(
-    name="restitution",
+STUDY = Study.of(
+    globals(),
     question="Which setting gives which coefficient of restitution?",
     help="""The speed of a corner that strikes the base, once, after over before.
 
@@ -238,12 +238,6 @@ For coefficients from 0 to 1, wherever in a step the impact falls, and at anothe
 or slenderness; and what the block keeps of its angular rate. Half a minute. Writes restitution.csv,
 corners.csv, findings.txt and a picture.""",
     options=Options,
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     texts=("way", "varied", "literal"),
     captions={
         "strikes": "Speed of the striking corner over the coefficient that was asked for, in each "

@@ -343,8 +343,8 @@ def _engines_in(lines: pd.DataFrame) -> pd.DataFrame:
     return lines[np.array([is_engine(name) for name in lines.get("source", ())], bool)]
 
 
-STUDY = Study(
-    name="scenes",
+STUDY = Study.of(
+    globals(),
     question="Does it hold for frames, friction alone, moving floors?",
     help="""A frame, a slide, a moving floor, beside their exact solutions.
 
@@ -356,12 +356,6 @@ about frames alone. Of frames and slides there are 60 random ones each, which no
 on. What an engine is not built for is a row that says so. Two hours.""",
     sources=core_sources("default", "tuned", "landing"),
     quick="One frame, one slide, two places of the steps, and three random ones of each.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if row["reason"] != Reason.UNAVAILABLE.name],
     captions={
         "frame-time": "For each engine and preset the error of a frame's peak from its median to "

@@ -239,16 +239,10 @@ def figures(tables: Tables) -> Figures:
     }
 
 
-STUDY = Study(
-    name="score",
+STUDY = Study.of(
+    globals(),
     question="What does one engine predict, and did it get worse?",
     help="The paper's cases, errors along the step, extreme cases, slides and frames.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if row["part"] in (MODEL, SWEEP)],
 )
 

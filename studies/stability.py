@@ -129,8 +129,8 @@ def figures(tables: Tables) -> Figures:
     return {"stability": draw_scores(finding(tables), engines, cases)} if len(engines) else {}
 
 
-STUDY = Study(
-    name="stability",
+STUDY = Study.of(
+    globals(),
     question="Which methods stay finite, right and accurate in stiff and extreme cases?",
     help="""Stiff and extreme cases: who stays finite, keeps the outcome and the energy.
 
@@ -142,13 +142,7 @@ findings.txt and a picture.""",
         *("exact", "rk4", "average-acceleration", "dop853", "radau"),
         *core_sources("", "tuned", "default"),
     ),
-    jobs=jobs,
-    measure=measure,
     needed=without_result,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "stability": "How many of the valid extreme cases each engine predicts with each preset, "
         "and below the six cases on which the presets differ most.",

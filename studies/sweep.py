@@ -235,8 +235,8 @@ def _ranges(values: Iterable[float]) -> str:
     return ", ".join("–".join(f"{tenth / 10:g}" for tenth in end) for end in ends)
 
 
-STUDY = Study(
-    name="sweep",
+STUDY = Study.of(
+    globals(),
     question="Do the engines and the linearizations predict the paper's cases?",
     help="""The paper's sensitivity analysis, figures 6 to 9.
 
@@ -245,11 +245,6 @@ with the default sources. A run that was interrupted goes on when the same comma
 Writes sweep.csv, summary.csv, findings.csv, findings.txt and a picture of each figure.""",
     sources=("exact", "housner", "modified", "onset-matched", *core_sources()),
     options=Options,
-    jobs=jobs,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     rows="sweep",
     captions={
         "overview": "For each engine and preset the error of the peak from its median to the "

@@ -178,8 +178,8 @@ def figures(tables: Tables) -> Figures:
     return {"validate": draw_conditioning(tables["errors"])} if "errors" in tables else {}
 
 
-STUDY = Study(
-    name="validate",
+STUDY = Study.of(
+    globals(),
     question="Do the sources predict random cases that no setting was tuned on?",
     help="""Random blocks: H/B from 1.2 to 12, B from 0.02 to 10 m; pulses of 1.02 to 4 onsets.
 
@@ -190,11 +190,6 @@ according to the engine itself at half the step. Each needs a folder of its own.
     sources=core_sources(),
     options=Options,
     quick="Fewer random cases: 100; with --halves 20, and 10 that test.",
-    jobs=jobs,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "validate": "Errors of random cases in bands of S, how far small errors of the pulse or of "
         "the impacts move a peak: for each engine the middle half, the median, and the ends.",
