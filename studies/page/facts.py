@@ -23,6 +23,7 @@ from studies.kit.say import capital, duration, listed, part, signed
 from studies.kit.store import engines_of, provenance_of, whole_runs
 from studies.kit.tables import table_in
 from studies.measures.costs import cost_text
+from studies.measures.presets import titled
 from studies.measures.published import TARGETS
 from studies.measures.wrongness import KINDS
 from studies.sweep import over_all, preset_table
@@ -33,6 +34,12 @@ Table: TypeAlias = tuple[list[str], list[list[str]]]
 """Heads, and the cells of each row."""
 CASE = ("figure", "aspect", "width_m", "omega_over_p")
 """Columns that tell the paper's cases apart."""
+HEADS = {
+    **{"ms_a_frame": "a case", "ms_a_slide": "a case", "max_error": "largest error"},
+    "floor": "floor moved by",
+    **{"median_difference": "median, of θcr", "max_difference": "largest, of θcr"},
+}
+"""Column of a scene's summary -> its head, where that is another."""
 TITLES = {name: ENGINES[name].title for name in OWN}
 
 
@@ -82,20 +89,23 @@ def compared(published: Path) -> dict[str, int]:
 def in_scene(published: Path, name: str) -> Table:
     """Return a summary of a scene's engines, its numbers in words."""
     lines = table_in(published / "scenes", name)
-    rows = [
-        [_cell(str(head), it) for head, it in line.items()] for line in lines.to_dict("records")
-    ]
-    return [str(head).replace("_", " ") for head in lines], rows
+    heads = [str(head) for head in lines if not str(head).startswith("p90")]
+    rows = [[_cell(head, line[head]) for head in heads] for line in lines.to_dict("records")]
+    return [HEADS.get(head, head.removesuffix("_m").replace("_", " ")) for head in heads], rows
 
 
 def _cell(head: str, value: Any) -> str:
     if not isinstance(value, float):
-        return f"`{value}`" if head == "source" else str(value)
+        return titled(value) if head == "source" else str(value)
     if math.isnan(value):
         return "–"
-    return (
-        part(value) if head.endswith(("error", "difference", "rest", "carried")) else f"{value:.3g}"
-    )
+    if head.startswith("ms_"):
+        return duration(1e-3 * value)
+    if head.startswith("carried"):
+        return f"{round(100.0 * value, 1) + 0.0:.1f} %"
+    if head.endswith("_m"):
+        return f"{1e3 * value:.3g} mm" if value >= 1e-6 else "0"
+    return part(value)
 
 
 def advised(published: Path) -> list[list[str]]:
@@ -141,7 +151,8 @@ def pasted(published: Path) -> list[dict[str, Any]]:
 
 def unadvised(published: Path) -> dict[str, str]:
     """Return why pasted lines are not advised, of each engine where they are not."""
-    return not_advised(table_in(published / "advice", "advice"))
+    bad = not_advised(table_in(published / "advice", "advice"))
+    return {TITLES[engine]: why for engine, why in bad.items()}
 
 
 def lags(published: Path) -> list[list[str]]:
