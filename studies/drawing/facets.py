@@ -45,9 +45,13 @@ def panels(
 
 
 def error_scale(axis: Axis, low: float, high: float, every: int = 2) -> None:
-    """Mark a logarithmic axis of relative errors at every so many powers of ten up to 100 %."""
+    """Mark a logarithmic axis of relative errors, in per cent or, with tiny ones, in powers."""
     errors = [10.0**k for k in range(0, -17, -every) if low <= 10.0**k <= high]
-    marks = [f"{100.0 * error:g} %" if error >= 0.999e-3 else power(error) for error in errors]
+    percent = min(errors, default=1.0) > 0.9e-6
+    marks = [
+        f"{100.0 * it:.4f}".rstrip("0").rstrip(".") + " %" if percent else power(it)
+        for it in errors
+    ]
     axis.set_ticks(errors, marks)
     axis.set_ticks([], minor=True)
 

@@ -18,8 +18,8 @@ from studies.kit.pictures import lay_out, write_points
 from studies.kit.say import SMALL, part
 from studies.kit.store import engines_of, provenance_of
 from studies.kit.tables import table_in, write_text
-from studies.measures.presets import in_order, in_words
-from studies.measures.wrongness import KINDS, MEANINGS, WORDS, in_kinds
+from studies.measures.presets import in_order, look_of
+from studies.measures.wrongness import KINDS, MEANINGS, WORDS
 from studies.page.chapters import CHAPTERS, PARTS, Part
 from studies.page.facts import presets
 from studies.sources.registry import resolve
@@ -64,8 +64,8 @@ def first_sight(folder: Path) -> dict[str, Any]:
     return {
         "verdict": SWEEP.finding(SWEEP.read(folder / place)),
         "cases": int(lines["cases"].max()),
-        "wrong": "; ".join(f"{name}: {MEANINGS[kind]}" for kind, name in WORDS.items()),
-        "presets": list(map(in_words, names)),
+        "wrong": "; ".join(f"{name} ({MEANINGS[kind]})" for kind, name in WORDS.items()),
+        "presets": [look_of(name).short for name in names],
         "tiles": tiles,
     }
 
@@ -75,9 +75,9 @@ def _tile(line: dict[Any, Any]) -> dict[str, str]:
     good, bad = not lost and line["max"] < GOOD, lost or line["max"] > BAD
     return {
         "kind": "good" if good else "bad" if bad else "",
-        "wrong": in_kinds(line),
+        "wrong": str(sum(line[kind] for kind in KINDS)),
         "median": part(line["median"]),
-        "max": f"at most {part(line['max'])}",
+        "max": part(line["max"]),
     }
 
 

@@ -60,8 +60,18 @@ function drawBlock(now, theta, shift, overturned) {
   pen.restore();
 }
 
+// the titles of two axes, below and to the left
+function title(pen, across, up, [left, foot], wide, high) {
+  pen.fillText(across, (left + wide - pen.measureText(across).width) / 2, high - 6);
+  pen.save();
+  pen.translate(12, (foot + pen.measureText(up).width) / 2);
+  pen.rotate(-Math.PI / 2);
+  pen.fillText(up, 0, 0);
+  pen.restore();
+}
+
 function drawHistory(now, found, place) {
-  const { pen, wide, high } = sheet("history"), left = 44, foot = high - 24;
+  const { pen, wide, high } = sheet("history"), left = 58, foot = high - 24;
   const all = found.samples.map(theta => theta / now.alpha);
   const most = Math.min(Math.max(1.1 * Math.max(...all.map(Math.abs)), 0.02), 1.3);
   const x = tau => left + ((wide - left - 8) * tau) / found.until;
@@ -71,10 +81,18 @@ function drawHistory(now, found, place) {
   pen.fillStyle = pen.strokeStyle = colour("soft");
   for (const level of most > 1 ? [-1, 0, 1] : [0]) {
     pen.fillRect(left, y(level), wide - left - 8, 1);
-    pen.fillText(level === 0 ? "0" : `${level < 0 ? "−" : ""}θcr`, 8, y(level) + 4);
+    pen.fillText(level === 0 ? "0" : `${level < 0 ? "−" : ""}θcr`, 24, y(level) + 4);
   }
+  title(pen, "time [s]", "rotation", [left, foot], wide, high);
   if (most <= 1) pen.fillText(`${(most / 1.1).toPrecision(2)} θcr`, left + 4, 18);
   pen.fillText("pulse", x(0) + 4, foot - 6);
+  pen.strokeStyle = colour("paper");
+  pen.beginPath();
+  for (let k = 0; k <= 90; k++) {
+    const height = Math.sin((now.halfCycles * Math.PI * k) / 90) * 0.3 * foot;
+    pen.lineTo(x((found.shaking.end * k) / 90), y(0) - height);
+  }
+  pen.stroke();
   pen.fillText("0", left, high - 6);
   const end = `${(found.until / now.p).toPrecision(3)} s`;
   pen.fillText(end, wide - 8 - pen.measureText(end).width, high - 6);
@@ -115,8 +133,10 @@ function chartOn(now) {
   return chart.done < chart.cells.length;
 }
 
+const LEFT = 40, BELOW = 40;
+
 function drawMap(now) {
-  const { pen, wide, high } = sheet("map"), left = 30, foot = high - 22;
+  const { pen, wide, high } = sheet("map"), left = LEFT, foot = high - BELOW;
   const [w, h] = [(wide - left) / CELLS[0], foot / CELLS[1]];
   const xOf = ratio => left + ((wide - left) * (ratio - RATIOS[0])) / (RATIOS[1] - RATIOS[0]);
   const yOf = onsets => foot - (foot * (onsets - 1)) / (MOST_ONSETS - 1);
@@ -139,9 +159,10 @@ function drawMap(now) {
   pen.strokeRect(left, 0.5, wide - left - 1, foot);
   pen.fillStyle = colour("soft");
   for (const ratio of [1, 2, 4, 6, 8])
-    pen.fillText(ratio, xOf(ratio) - 8, high - 6);
+    pen.fillText(ratio, xOf(ratio) - 8, foot + 14);
   for (const onsets of [1, 4, 7, 10])
-    pen.fillText(onsets, 6, Math.max(yOf(onsets) + 3, 10));
+    pen.fillText(onsets, 22, Math.max(yOf(onsets) + 3, 10));
+  title(pen, "frequency ω/p", "amplitude / onset", [left, foot], wide, high);
   const x = xOf(now.omega / now.p), y = yOf(now.amplitude / Math.tan(now.alpha));
   pen.strokeStyle = "#D55E00";
   pen.lineWidth = 2;
@@ -209,7 +230,7 @@ function sayEngines(now) {
   const rest = held.rests[place] ? `, after ${held.rests[place]} s of rest, which no command asks for` : "";
   part("case").textContent = `H/B ${aspect}, B ${width} m, ${digits(amplitude)} g, ${digits(omega)} rad/s${rest}`;
   const words = peak => (peak === null ? "no result" : peak < 0 ? "overturns" : `${peak.toFixed(4)} θcr`);
-  const off = peak => (!held.judged[place] ? "should slide or lift off" : peak === null || peak < 0 ? (peak === exact ? "" : "wrong")
+  const off = peak => (!held.judged[place] ? "not judged: slides or lifts off" : peak === null || peak < 0 ? (peak === exact ? "" : "wrong")
     : exact < 0 ? "wrong" : `${peak < exact ? "−" : "+"}${digits(100 * Math.abs(peak / exact - 1), 2)} %`);
   part("answers").replaceChildren(...sources.map(source => {
     const line = document.createElement("tr"), peak = held.peaks[source][place];
@@ -289,8 +310,8 @@ function frame(clock) {
 
 function fromMap(event) {
   const canvas = part("map"), box = canvas.getBoundingClientRect(), now = asked();
-  const across = (event.clientX - box.left - 30) / (box.width - 30);
-  const up = 1 - (event.clientY - box.top) / (box.height - 22);
+  const across = (event.clientX - box.left - LEFT) / (box.width - LEFT);
+  const up = 1 - (event.clientY - box.top) / (box.height - BELOW);
   if (across < 0 || across > 1 || up < 0 || up > 1) return;
   put({ omega: (RATIOS[0] + across * (RATIOS[1] - RATIOS[0])) * now.p,
     amplitude: (1 + up * (MOST_ONSETS - 1)) * Math.tan(now.alpha) });

@@ -64,7 +64,7 @@ def test_a_page_has_a_tile_for_each_preset_and_cases_to_try(tmp_path, monkeypatc
     monkeypatch.setattr(page, "CHAPTERS", {})
     page.write_page(tmp_path / "report.html", PUBLISHED, full=True)
     tiles, _, rest = (tmp_path / "report.html").read_text().partition('id="try-cases">')
-    assert tiles.count("MuJoCo") == 1 and " cases: wrong outcomes" in tiles
+    assert tiles.count("MuJoCo") == 1 and " 960 cases" in tiles
     assert "mujoco:default" in json.loads(rest.partition("</script>")[0])["peaks"]
 
 
