@@ -30,11 +30,12 @@ from studies.kit.run import makers_of, run
 from studies.kit.say import duration, in_columns, one_line, out_of, part, say
 from studies.kit.store import FolderError, Store, check, engines_of, provenance_of
 from studies.kit.study import Figures, Study, Tables
-from studies.kit.tables import write_text
+from studies.kit.tables import table_in, write_text
 from studies.measures import world
 from studies.measures.costs import joint
 from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import engine_of, preset_of
+from studies.measures.published import PUBLISHED
 from studies.measures.verdicts import Verdict
 from studies.sources.registry import announce, presets_of, resolve
 
@@ -231,12 +232,12 @@ def figures(tables: Tables) -> Figures:
     from studies.drawing.stability import draw_scores
 
     along = precision.work_precision(tables[STEPS])
-    answered = (along["wall_s"] > 0.0).any()
     asked = (stability.scores(tables[EXTREMES], each) for each in ("engine", "case"))
-    return {
-        **({"score": draw_precision(along)} if answered else {}),
-        "extremes": draw_scores("Extreme cases", *asked),
-    }
+    drawn = {"extremes": draw_scores("Extreme cases", *asked)}
+    if (along["wall_s"] > 0.0).any():
+        others = table_in(PUBLISHED / "precision", "work-precision")
+        drawn["score"] = draw_precision(along, others)
+    return drawn
 
 
 STUDY = Study.of(

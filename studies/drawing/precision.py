@@ -29,39 +29,59 @@ def band_of(method: str) -> str | None:
     return LANDING if preset == ENGINES[engine].best.name and not dial else None
 
 
-def draw_precision(table: pd.DataFrame) -> Figure:
-    """Draw the median error of the peak, of the harder set, against the run time of a case."""
+def _banded(table: pd.DataFrame) -> pd.DataFrame:
     medians = table.groupby(["method", "value"], sort=False)["median_error"].max().to_numpy()
     error = np.where(np.isfinite(medians), np.maximum(medians, LOWEST), WRONG)
     lines = joint(table).assign(error=error).query("wall_s > 0.0")
-    band = lines["method"].map(band_of)
-    known = [name for name in ("", DEFAULT, BEST, LANDING) if name in {*band}]
+    return lines.assign(band=lines["method"].map(band_of))
+
+
+def draw_precision(table: pd.DataFrame, others: pd.DataFrame | None = None) -> Figure:
+    """Draw the median error of the peak, of the harder set, against the run time of a case.
+
+    Engines of another table are drawn in grey beside those of this one.
+    """
+    lines = _banded(table)
+    cloud = lines.iloc[:0] if others is None or others.empty else _banded(others)
+    cloud = cloud[~cloud["method"].isin(lines["method"])]
+    known = [name for name in ("", DEFAULT, BEST, LANDING) if name in {*lines["band"]}]
     drawing, grid = sheet((9.4, 1.2 + 2.6 * len(known)), len(known), 1, sharex=True)
     grid[0].set(xscale="log")
     for axes, name in zip(grid, known, strict=True):
-        mine = lines[band == name]
+        mine, grey = (each[each["band"] == name] for each in (lines, cloud))
         axes.set(yscale="log", ylim=(0.3 * mine["error"].min(), 2.0 * max(mine["error"].max(), 1)))
         error_scale(axes.yaxis, *axes.get_ylim(), 2 if name else 4)
         axes.grid(alpha=0.2)
         title = capital(look_of(name).words) if name else "Models and solvers"
         axes.set_title(title, fontsize=10.5, fontweight="bold", loc="left")
-        _lines(axes, mine)
+        _lines(axes, mine, grey)
     grid[-1].set_xlabel("run time of a case, set-up apart  [s]", fontsize=10)
     drawing.supylabel("median relative error of the peak, of the harder set", fontsize=10)
     exact = exact_cost(table)
     own = "" if np.isnan(exact) else f"; the exact solution takes {duration(exact)} a case"
+    beside = "" if cloud.empty else "; grey: other engines, published"
     cases = int(table.groupby("set")["cases"].max().sum())
     drawing.suptitle(
         f"Error against run time, from coarse to fine{own}\n"
-        f"a cross: a failure or a wrong outcome in one of {cases} cases", fontsize=12,
+        f"a cross: a failure or a wrong outcome in one of {cases} cases{beside}", fontsize=12,
     )  # fmt: skip
     return drawing
 
 
-def _lines(axes: Axes, lines: pd.DataFrame) -> None:
-    """Draw a line for each method, and write the names beside their ends, from above."""
-    ends = lines.groupby("method", sort=False)["error"].last().sort_values(kind="stable")
+def _lines(axes: Axes, lines: pd.DataFrame, cloud: pd.DataFrame) -> None:
+    """Draw a line for each method, and write the names beside their ends, from above.
+
+    Of the cloud two are named: the most accurate one and MuJoCo, or the next one.
+    """
+    ends = cloud.groupby("method", sort=False)["error"].last().sort_values(kind="stable").index
+    best = sorted(ends, key=lambda name: name != ends[0] and parts_of(name)[0] != "mujoco")[:2]
+    drawn = pd.concat([lines, cloud[cloud["method"].isin(best)]])
+    ends = drawn.groupby("method", sort=False)["error"].last().sort_values(kind="stable")
     places = dict(zip(ends.index, np.linspace(0.03, 0.97, len(ends)), strict=True))
+    for name, line in cloud.groupby("method", sort=False):
+        axes.plot(line["wall_s"], line["error"], color="#BBBBBB", linewidth=0.9)
+        if name in places:
+            _name(axes, str(name), line, places[name], "#666666")
     for number, (name, line) in enumerate(lines.groupby("method", sort=False)):
         engine = parts_of(str(name))[0]
         other = "#000000" if name == EXACT else f"C{number}"
@@ -70,9 +90,13 @@ def _lines(axes: Axes, lines: pd.DataFrame) -> None:
         wrong = (line["failed"] > 0) | ~np.isfinite(line["max_error"])
         for points, marker in ((line[~wrong], "o"), (line[wrong], "x")):
             axes.plot(points["wall_s"], points["error"], marker, color=colour, markersize=4.0)
-        words = title_of(engine) if engine else capital(str(name))
-        leader = {"arrowstyle": "-", "color": colour, "lw": 0.5, "alpha": 0.6}
-        end = line["wall_s"].iloc[-1], line["error"].iloc[-1]
-        axes.annotate(words, end, (1.06, places[name]),
-                      textcoords="axes fraction", va="center", fontsize=9, color=colour,
-                      arrowprops=leader)  # fmt: skip
+        _name(axes, str(name), line, places[name], colour)
+
+
+def _name(axes: Axes, method: str, line: pd.DataFrame, place: float, colour: str) -> None:
+    engine = parts_of(method)[0]
+    words = title_of(engine) if engine else capital(method)
+    leader = {"arrowstyle": "-", "color": colour, "lw": 0.5, "alpha": 0.6}
+    end = line["wall_s"].iloc[-1], line["error"].iloc[-1]
+    axes.annotate(words, end, (1.06, place), textcoords="axes fraction", va="center", fontsize=9,
+                  color=colour, arrowprops=leader)  # fmt: skip
