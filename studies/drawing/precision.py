@@ -15,6 +15,8 @@ from studies.measures.presets import look_of
 
 WRONG = 10.0
 """Where settings are drawn with which half of the cases and more have no error."""
+GAP = 0.07
+"""Least distance between two names, over the height of a panel."""
 LANDING = "landing"
 
 
@@ -49,7 +51,8 @@ def draw_precision(table: pd.DataFrame, others: pd.DataFrame | None = None) -> F
     grid[0].set(xscale="log")
     for axes, name in zip(grid, known, strict=True):
         mine, grey = (each[each["band"] == name] for each in (lines, cloud))
-        axes.set(yscale="log", ylim=(0.3 * mine["error"].min(), 2.0 * max(mine["error"].max(), 1)))
+        errors = pd.concat([mine, grey])["error"]
+        axes.set(yscale="log", ylim=(0.3 * errors.min(), 2.0 * max(errors.max(), 1.0)))
         error_scale(axes.yaxis, *axes.get_ylim(), 2 if name else 4)
         axes.grid(alpha=0.2)
         title = capital(look_of(name).words) if name else "Models and solvers"
@@ -77,7 +80,11 @@ def _lines(axes: Axes, lines: pd.DataFrame, cloud: pd.DataFrame) -> None:
     best = sorted(ends, key=lambda name: name != ends[0] and parts_of(name)[0] != "mujoco")[:2]
     drawn = pd.concat([lines, cloud[cloud["method"].isin(best)]])
     ends = drawn.groupby("method", sort=False)["error"].last().sort_values(kind="stable")
-    places = dict(zip(ends.index, np.linspace(0.03, 0.97, len(ends)), strict=True))
+    low, high = np.log(axes.get_ylim())
+    gaps = GAP * np.arange(len(ends))
+    heights = np.maximum.accumulate((np.log(ends) - low) / (high - low) - gaps) + gaps
+    heights -= max(heights.iloc[-1] - 0.97, 0.0) if len(ends) else 0.0
+    places = dict(zip(ends.index, heights, strict=True))
     for name, line in cloud.groupby("method", sort=False):
         axes.plot(line["wall_s"], line["error"], color="#BBBBBB", linewidth=0.9)
         if name in places:
