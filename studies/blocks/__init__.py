@@ -241,10 +241,12 @@ def finding(tables: Tables) -> str:
         words += f" In {out_of(short, len(lines))} {pairs} the block slides first: no margin holds."
     if "fragility" in tables:
         every = tables["fragility"].query("measure == 'factor'").iloc[-1]
-        words += (
-            f"\n\nUnder half of {every['records']:.0f} records a block of the list overturns at "
-            f"the factor {every['median']:.3g} or below (spread β {every['beta']:.2g})."
-        )
+        if np.isfinite(every["median"]):
+            spread = f" (spread β {every['beta']:.2g})" if every["beta"] >= 0.0 else ""
+            words += (
+                f"\n\nUnder half of {every['records']:.0f} records a block of the list overturns "
+                f"at the factor {every['median']:.3g} or below{spread}."
+            )
     return words
 
 

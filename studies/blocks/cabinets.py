@@ -25,7 +25,7 @@ SKIPPED = re.compile(r"\s*#|sep=.$")
 """Lines that belong to no table: comments, and how a spreadsheet names its separator."""
 MEANT = ("friction", "friction coefficient", "friction_coefficient", "cof", "mu", "µ", "μ")
 """Names of a column that may be meant as friction."""
-THOUSANDS = re.compile(r"[1-9]\d{0,2}([.,]\d{3})+")
+THOUSANDS = re.compile(r"[1-9]\d{0,2}([.,]\d{3})+([.,]\d*)?")
 
 Cells = Mapping[str, str]
 

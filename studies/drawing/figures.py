@@ -105,7 +105,8 @@ def draw_responses(responses: Mapping[str, Response]) -> Figure:
         if (history := response.history) is None:
             words = "ask for one by respond(..., history=True) or simulate(..., times=...)"
             raise ValueError(f"{name} has no history; {words}")
-        axes.plot(history.time, history.theta, label=f"{name}: {response.outcome.value}")
+        look = "--" if axes.lines else "-"  # one that lies over another hides nothing
+        axes.plot(history.time, history.theta, look, label=f"{name}: {response.outcome.value}")
     slid = any(response.outcome is Outcome.SLID for response in responses.values())
     axes.set(xlabel="time  t  [s]", ylabel="place  x  [m]" if slid else "rotation  θ  [rad]")
     axes.grid(alpha=0.25)
