@@ -166,14 +166,12 @@ def strength(block: RigidBlock, motion: Record) -> Strength:
 
     lifts = math.tan(block.alpha) * block.gravity / motion.peak
     count = round(math.log(MOST_ONSETS) / math.log1p(APART))
-    factors = [lifts * (1.0 + APART) ** n for n in range(1, count + 1)]
-    found = next((n for n, factor in enumerate(factors) if falls(factor)), None)
-    high = math.inf if found is None else factors[found]
-    if found is not None:
-        low = factors[found - 1] if found else lifts
-        while high - low > WIDTH * high:
-            middle = 0.5 * (low + high)
-            low, high = (low, middle) if falls(middle) else (middle, high)
+    factors = [lifts * (1.0 + APART) ** n for n in range(count + 1)]
+    high = next(filter(falls, factors[1:]), math.inf)
+    low = max(factor for factor in factors if factor < high)
+    while high - low > WIDTH * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if falls(middle) else (middle, high)
     needed = simulate(block, motion.scaled(min(high, factors[-1]))).friction_needed
     return Strength(lifts, high, needed)
 
@@ -282,7 +280,7 @@ def figures(tables: Tables) -> Figures:
 
     rows, title = tables["blocks"], "The factors on a record that overturn each block"
     drawn = {"blocks": draw_blocks(ranked(rows), sorted(set(rows["scale"])), title)}
-    if "fragility" in tables:
+    if "fragility" in tables and tables["fragility"]["theta"].notna().any():
         drawn["fragility"] = draw_fragility(tables["fragility"], ranked(rows))
     return drawn
 
@@ -364,12 +362,12 @@ def command(
     tables = STUDY.read(out)
     pages = Environment(loader=PackageLoader("studies.blocks", "."), autoescape=True)
     listing = shown(tables)
-    pictures = ("blocks", "fragility") if "fragility" in tables else ("blocks",)
     page = pages.get_template("page.html.jinja").render(
         finding=finding(tables).split("\n\n"),
         pictures=[
             (STUDY.caption_of(name), b64encode((out / f"{name}.png").read_bytes()).decode())
-            for name in pictures
+            for name in ("blocks", "fragility")
+            if (out / f"{name}.png").is_file()
         ],
         records=[(name, ground, trace(ground)) for name, ground in grounds.items()],
         found=tables["blocks"].drop_duplicates("record").set_index("record"),

@@ -94,8 +94,7 @@ def draw_fragility(fits: pd.DataFrame, lines: pd.DataFrame) -> Figure:
     """
     fits = fits[(fits["measure"] == "factor") & fits["theta"].notna()]
     drawing, (axes,) = sheet((8.0, 4.2))
-    names = fits["name"].tolist()
-    with rc_context({"font.family": families(names), "text.parse_math": False}):
+    with rc_context({"font.family": families(fits["name"].tolist()), "text.parse_math": False}):
         for place, fit in enumerate(fits.to_dict("records")):
             whole = place == len(fits) - 1
             factors = fit["theta"] * np.exp(np.linspace(-3.0, 3.0, 121) * max(fit["beta"], 1e-3))
@@ -104,15 +103,14 @@ def draw_fragility(fits: pd.DataFrame, lines: pd.DataFrame) -> Figure:
             count = f"{_short(fit['name'])}, {fit['records']} records"
             label = count if whole or place < MOST_NAMED else None
             axes.plot(factors, chance, color=colour, linewidth=width, label=label)
-        if len(fits):
-            ends = [fit["theta_low"], fit["theta_high"]]
-            axes.plot(ends, [0.5, 0.5], color="black", linewidth=5.0, alpha=0.4,
-                      label="its median, 90 % interval")  # fmt: skip
-            least = np.sort(lines.groupby("record")["margin"].min().dropna())
-            parts = (np.arange(len(least)) + 0.5) / len(least)
-            axes.plot(least[np.isfinite(least)], parts[np.isfinite(least)], ".", color="black",
-                      label="least factor of each record")  # fmt: skip
-            axes.legend(fontsize=8, frameon=False, loc="lower right")
+        ends = [fit["theta_low"], fit["theta_high"]]
+        axes.plot(ends, [0.5, 0.5], color="black", linewidth=5.0, alpha=0.4,
+                  label="its median, 90 % interval")  # fmt: skip
+        least = np.sort(lines.groupby("record")["margin"].min().dropna())
+        parts = (np.arange(len(least)) + 0.5) / len(least)
+        axes.plot(least[np.isfinite(least)], parts[np.isfinite(least)], ".", color="black",
+                  label="least factor of each record")  # fmt: skip
+        axes.legend(fontsize=8, frameon=False, loc="lower right")
         axes.set(xscale="log", ylim=(0.0, 1.0), xlabel="factor on the record  [–]",
                  ylabel="part of the records that overturn")  # fmt: skip
         axes.xaxis.set_major_formatter("{x:g}")
@@ -124,15 +122,14 @@ def draw_fragility(fits: pd.DataFrame, lines: pd.DataFrame) -> Figure:
 def _draw_line(axes: Axes, line: dict[Any, Any], level: float, place: int) -> Line2D:
     """Draw the factors of a block under a record, and return what stands for that in the key."""
     colour, marker = look_at(place)
-    look: dict[str, Any] = {"color": colour, "marker": marker, "markersize": 4.5}
+    look: dict[str, Any] = {"color": colour, "marker": marker, "markersize": 4.5, "linewidth": 1.2}
     if words := line["no_margin"] or ("none found" if np.isinf(line["margin"]) else ""):
         axes.annotate(f"{words} ", (1.0, level), xycoords=("axes fraction", "data"), ha="right",
                       va="center", fontsize=7, color=colour)  # fmt: skip
     else:
-        ends = [line["lifts"], line["margin"]]
-        axes.plot(ends, [level] * 2, markevery=[1], linewidth=1.2, **look)
+        axes.plot([line["lifts"], line["margin"]], [level] * 2, markevery=[1], **look)
     label = f"{_short(line['record'])}: lifts to overturns"
-    return Line2D([], [], linewidth=1.2, label=label, **look)
+    return Line2D([], [], label=label, **look)
 
 
 def _short(name: str) -> str:

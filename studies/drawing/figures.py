@@ -100,6 +100,8 @@ def _draw_errors(axes: Axes, panel: pd.DataFrame) -> None:
 
 def draw_responses(responses: Mapping[str, Response]) -> Figure:
     """Draw the histories of named responses over each other; ValueError where one has none."""
+    if not responses:
+        raise ValueError("responses is empty; it must hold one or more")
     drawing, (axes,) = sheet((8.0, 4.0))
     for name, response in responses.items():
         if (history := response.history) is None:

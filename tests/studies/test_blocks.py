@@ -16,7 +16,7 @@ from studies import blocks
 from studies.__main__ import run
 from studies.blocks import WIDTH, strength
 from studies.blocks.cabinets import read_cabinets
-from studies.blocks.fragility import lognormal
+from studies.blocks.fragility import fragility, lognormal
 from studies.kit.tables import read_table
 
 HEAD = "name,width,height,friction\n"
@@ -93,7 +93,7 @@ BAD = [
     (HEAD + "A,500,900,\n" * 3, "line 2 and 2 more: width is '500'; "),
     (HEAD + "A,0.5,nan,\n", "line 2: height is 'nan'"),
     ("name;width mm;height;note;note\n", "each once"),
-    ("name;width mm;height\nA;1,500;1\n", "be in mm without a mark between thousands"),
+    ("name;width mm;height\nA;1.500,0;1\nB;1,500;1\n", "2 and 1 more: .* mark between thousands"),
     ("name;width;height;mu\n", "its column 'mu' must have a name, friction if it is that"),
     ("name;width;height;margin\n", "its column 'margin' must be renamed"),
     (HEAD + "A,0,5,1,5,\n", "line 2: it has more .* decimal commas need semicolons"),
@@ -152,7 +152,9 @@ def test_a_scale_that_overturns_in_a_sliver_counts_and_a_failed_search_has_no_ma
             {**case, "scale": 0.0, "outcome": "found", **found}]  # fmt: skip
     table = blocks.tabulate(pd.DataFrame(rows))["blocks"]
     assert table["margin"].tolist() == [0.9, 0.9]
-    assert "1 of 1 blocks overturn" in blocks.finding({"blocks": table})
+    both = {"blocks": table, "fragility": fragility(blocks.ranked(table))}
+    assert "1 of 1 blocks overturn" in blocks.finding(both)
+    assert "nan" not in blocks.finding(both) and [*blocks.figures(both)] == ["blocks"]
     rows[-1] |= {"outcome": "failed", **dict.fromkeys(found, math.nan)}
     table = blocks.tabulate(pd.DataFrame(rows))["blocks"]
     assert table["no_margin"].tolist() == ["failed"] * 2 and table["margin"].isna().all()
@@ -217,8 +219,7 @@ NAMES = ["nan", "007", "$x_1$", "<b>&", "Schrank Ä 3", "a" * 300, "サーバー
 def test_names_are_what_they_are(place, capsys):
     lines = [f"{name};0.5;{1.2 + 0.1 * n}" for n, name in enumerate(NAMES)]
     (place / "list.csv").write_text("\n".join(["name;width;height", *lines]))
-    assert run(ASKED) == 0
-    assert capsys.readouterr().err == ""
+    assert run(ASKED) == 0 and capsys.readouterr().err == ""
     assert read(place)["name"].tolist() == NAMES
     assert read_table(place / "out" / "blocks.csv")["friction"].isna().all()
     assert "<b>" not in (place / "out" / "blocks.html").read_text()
