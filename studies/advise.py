@@ -215,9 +215,9 @@ def finding(tables: Tables) -> str:
     ends = [[each["median_error"] for each in (old, new)] for *_, old, new in pairs(advice)]
     before, after = pd.DataFrame(ends).median()
     return (
-        f"A few pasted lines lower the typical and the largest error of a free box with "
-        f"{out_of(len(engines) - len(bad), len(engines))} engines at both steps, in the median "
-        f"from {part(before)} to {part(after)}."
+        f"Pasted lines lower the errors of a free box in "
+        f"{out_of(len(engines) - len(bad), len(engines))} engines at both steps; its median error "
+        f"falls from {part(before)} to {part(after)}."
     )
 
 
@@ -343,7 +343,7 @@ def cheapest(
 
 STUDY = Study(
     name="advise",
-    question="What to paste so that a free box on a floor at rest rocks right?",
+    question="Which lines make a free box on a floor at rest rock accurately?",
     help="Random boxes of six degrees of freedom, at each library's own step and at 1 ms.",
     jobs=lambda *_: (),
     measure=measure,

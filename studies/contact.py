@@ -201,17 +201,14 @@ def finding(tables: Tables) -> str:
     left = left_at_default(tables["variants"])
     raised = left[left["max_error"] > 1.1 * left["as_tuned"]]
     if raised.empty:
-        return (
-            "No tuned setting raises the errors of an engine when it alone is left at its default."
-        )
+        return "No error grows when a single tuned setting is left at the library's default."
     worst, engines = raised.nlargest(1, "max_error").iloc[0], left["engine"].nunique()
     worse = left.loc[left["worse"], "engine"].nunique()
-    predict = "predicts" if worse == 1 else "predict"
-    more = f"{out_of(worse, engines)} engines {predict}"
-    others = f", and {more} more outcomes wrong with one setting left so"
+    others = f"; in {out_of(worse, engines)} engines one such setting adds wrong outcomes"
     return (
-        f"{ENGINES[worst['engine']].title} misses peaks by up to {part(worst['max_error'])} with "
-        f"its {worst['factor']} alone left at the library's default{others if engines > 1 else ''}."
+        f"With only its {worst['factor']} left at the library's default, "
+        f"{ENGINES[worst['engine']].title} misses peaks by up to {part(worst['max_error'])}"
+        f"{others if engines > 1 else ''}."
     )
 
 
@@ -241,20 +238,20 @@ def figures(tables: Tables) -> Figures:
 
 STUDY = Study.of(
     globals(),
-    question="What does each setting of a contact cost and buy?",
-    help="""One factor of an engine's contact at a time: solver, geometry, friction, damping, ...
+    question="How much does each contact setting change errors and run time?",
+    help="""One contact setting of an engine at a time: solver, geometry, friction, damping, ...
 
-From the best fixed-step setting and from the library's defaults, on cases of the paper or on frames
-of several bodies, at one p dt; those that change the defaults at the library's own step too. A
-failure is an answer: the exit code is 1 only where a preset as it is fails at that p dt. Writes
-contact.csv, variants.csv, own-steps.csv, findings.txt and contact.png.""",
+Each setting is changed from its tuned and from its default value, at one p dt; changes of defaults
+are also run at the library's own step. The cases are the paper's, or frames of several bodies. A
+failed variant is a result: the exit code is 1 only if a whole preset fails. Writes contact.csv,
+variants.csv, own-steps.csv, findings.txt and contact.png.""",
     options=Options,
     quick="Fewer cases and twice the step: less than a minute on 2 cores.",
     needed=lambda rows: [row for row in rows if not row["factor"] and not row["own_step"]],
     texts=("factor", "level", "trap"),
     captions={
-        "contact": "The largest error of typical peaks with the tuned contact of each engine, and "
-        "with one of its settings left at the library's default: the three that matter most.",
+        "contact": "Largest error of typical peaks with the tuned contact of each engine, and with "
+        "one setting left at the library's default: the three settings that matter most.",
     },
 )
 command = STUDY.command()

@@ -85,7 +85,7 @@ def finding(tables: Tables) -> str:
     """Say how many of the paper's statements about its histories hold."""
     tested = tables["findings"].dropna(subset="holds")
     if tested.empty:
-        return "No statement of the paper was tested: the sources that it draws were not asked."
+        return "No statement was tested: --sources lacks what the paper compares."
     held = out_of(int(tested["holds"].eq(True).sum()), len(tested))
     return f"{capital(held)} statements of the paper about its time histories hold."
 
@@ -151,17 +151,16 @@ FIGURES = {
 
 STUDY = Study.of(
     globals(),
-    question="Does what the paper says about its time histories hold?",
+    question="Do the paper's statements about its time histories hold?",
     help="""The paper's time histories, figures 2, 4 and 5.
 
-For each figure its samples, its drawing, and whether what the paper says about it holds. Takes a
-few seconds. Writes histories.csv, findings.csv, findings.txt, and of each figure a table and a
-picture.""",
+Tests what the paper says about them. Takes a few seconds. Writes histories.csv, findings.csv,
+findings.txt, and a table and a picture for each figure.""",
     options=Options,
     captions={
-        "figure": "Rotation over time, a line for each source, a panel for each block and pulse.",
-        "figure-2": "Rotation over time, and below it the distance of each solver from the exact "
-        "solution; a pair of panels for each pulse.",
+        "figure": "Rotation against time: a line for each source, a panel for each case.",
+        "figure-2": "Rotation against time, and below it the difference of each solver from the "
+        "exact solution; a pair of panels for each pulse.",
     },
 )
 command = STUDY.command()

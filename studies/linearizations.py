@@ -168,16 +168,16 @@ def conclusion(lines: pd.DataFrame) -> Finding:
 
 STUDY = Study.of(
     globals(),
-    question="What in a linearization errs: onset, frequency or saddle?",
-    help="""What in a linearization errs: onset, frequency and saddle, each changed alone.
+    question="Which part of a linearization errs most: onset, frequency or saddle?",
+    help="""The error of a linearization's parts: onset, frequency and saddle, each changed alone.
 
-All eight combinations of Housner's and the modified choices against the exact solution, on the
-paper's cases and on a wider grid. Takes half a minute. Writes
-linearizations.csv, slenderness.csv, findings.csv, findings.txt and a picture.""",
+Compares all eight combinations of Housner's and the modified choices with the exact solution, on
+the paper's cases and on a wider grid. Takes half a minute. Writes linearizations.csv,
+slenderness.csv, findings.csv, findings.txt and a picture.""",
     texts=("changed",),
     captions={
-        "linearizations": "Median error of the peak over H/B, for eight linearizations on two "
-        "grids: the colour tells the onset, the dash the frequency.",
+        "linearizations": "Median error of the peak against H/B, for eight linearizations on two "
+        "grids; colours stand for the onset, dashes for the frequency.",
     },
 )
 command = STUDY.command()

@@ -233,14 +233,16 @@ def finding(tables: Tables) -> str:
         lines = tables["differences"].set_index("source")
         wrong = lines[FALSE] + lines[MISSED]
         worst = titled(str(wrong.idxmax()))
-        said.append(f"{worst} predicts {100.0 * wrong.max():.2g} % of the map wrongly.")
+        said.append(f"{worst} is wrong on {100.0 * wrong.max():.2g} % of the map.")
     if "parts" in tables:
         sums = tables["parts"].groupby("source", sort=False)[["close", "cases"]].sum()
         shares = (sums["close"] / sums["cases"]).sort_values()
-        ends = [f"{titled(name)} predicts {part(shares[name])}" for name in shares.index[[0, -1]]]
+        ends = [
+            f"{part(shares[it])} of the pulses with {titled(it)}" for it in shares.index[[0, -1]]
+        ]
         ends = list(dict.fromkeys(ends))
-        said.append(f"{' and '.join(ends)} of the pulses, with peaks within {part(CLOSE)}.")
-    return " ".join(said) or "Exact maps the plane alone."
+        said.append(f"Peaks are within {part(CLOSE)} for {' and '.join(ends)}.")
+    return " ".join(said) or "The exact solution maps the plane."
 
 
 def shown(tables: Tables) -> Tables:
@@ -280,12 +282,12 @@ def figures(tables: Tables) -> Figures:
 
 STUDY = Study.of(
     globals(),
-    question="Which pulses overturn a block, and who predicts that wrongly?",
+    question="Which pulses overturn a block, and where do sources err?",
     help="""Overturning maps: which pulses overturn a block, after how many impacts.
 
-Models map amplitude over frequency, beside where each differs from the exact solution, and where
-that needs more friction than there is, or lifts off. Engines that --sources names are asked pulse
-by pulse, of two similar blocks: --sources engines:default.""",
+Maps of amplitude against frequency, and where each model differs from the exact solution; where
+the exact motion needs much friction, or would lift off. Engines, as in --sources engines:default,
+compute single pulses on two similar blocks.""",
     sources=("exact", "housner", "modified", "onset-matched"),
     options=Options,
     quick="A coarser map, and fewer pulses for engines.",
@@ -293,14 +295,14 @@ by pulse, of two similar blocks: --sources engines:default.""",
     needed=lambda rows: [row for row in rows if row["source"] in MODELS],
     rows="defaults",
     captions={
-        "map": "Amplitude over frequency: which pulses overturn a block at once, which after an "
-        "impact, with the friction that the exact motion needs, and where it would lift off; and "
-        "for each linearization where it overturns and the exact block survives, and the reverse.",
-        "at-once": "Frequency and amplitude of full-sine pulses that come at once, a map for each "
-        "engine with its default settings: where the outcome is wrong, and where the peak errs by "
-        "more than a tenth; every other pulse was asked so, and stands for its neighbour.",
-        "after-rest": "The same maps for pulses that come after a second of rest, in which an "
-        "engine may put the block to sleep.",
+        "map": "Pulses that overturn a block at once or after an impact, the friction that the "
+        "exact motion needs, and where it would lift off; and for each linearization the pulses "
+        "for which it wrongly overturns the block, or wrongly lets it survive.",
+        "at-once": "Pulses without rest before them, for each engine with default settings: where "
+        "the outcome is wrong, and where the peak errs by more than a tenth. Every other pulse was "
+        "computed, and stands for its neighbour.",
+        "after-rest": "The same maps for pulses after a second of rest, in which an engine may put "
+        "the block to sleep.",
     },
 )
 command = STUDY.command()

@@ -271,17 +271,17 @@ def finding(tables: Tables) -> str:
     """Say with which engine the smallest error is cheapest, and how much the exact one costs."""
     table = tables["work-precision"]
     if engines_of(table).empty:
-        return f"The exact solution takes {duration(exact_cost(table))} a case."
+        return f"The exact solution takes {duration(exact_cost(table))} per case."
     if (found := cheapest(table)) is None:
         return f"No setting of an engine predicts every typical peak within {part(TARGETS[0])}."
     target, best, cases = found
     engine, preset, _ = parts_of(best["method"])  # one along its steps
-    method = f"{ENGINES[engine].title}, {look_of(preset).short}"
+    method = f"{ENGINES[engine].title} {look_of(preset).words}"
     exact = exact_cost(table if cases == ALL else table[table["set"] == TYPICAL])
-    over = f", {best['wall_s'] / exact:.3g} times as long as the exact solution takes"
+    over = f", {best['wall_s'] / exact:.3g} times the run time of the exact solution"
     return (
-        f"{method}, predicts every {'typical ' * (cases == TYPICAL)}peak "
-        f"within {part(target)} in {duration(best['wall_s'])} a case{over if exact > 0.0 else ''}."
+        f"{method} predicts every {'typical ' * (cases == TYPICAL)}peak within {part(target)} "
+        f"in {duration(best['wall_s'])} per case{over if exact > 0.0 else ''}."
     )
 
 
@@ -314,22 +314,22 @@ def figures(tables: Tables) -> Figures:
 
 STUDY = Study.of(
     globals(),
-    question="Which error does which run time buy, and what is not needed?",
-    help="""Error against run time: every method along its own setting, on the same cases.
+    question="What accuracy does a given run time buy, and what can be left out?",
+    help="""Error against run time of every method, from coarse to fine settings, on the same cases.
 
-The setting is a tolerance, a step or the iterations of a solver; 12 cases have typical peaks and 12
-are near overturning. A time is the best of five runs or more, until the shortest two agree, or of
-fewer where these take longer than half a second: how many is a column. Building and compiling are
-apart. Besides, what each thing costs that a scene leaves out: a free body, a full box, a moving
-base, a recorded history, ... A compiled loop over mj_step takes MuJoCo's steps; Python takes all
-others. With more than one of --jobs they slow each other down. It takes about 10 minutes.""",
+The setting is a tolerance, a step or the iterations of a solver. 12 cases have typical peaks, 12
+are near overturning. A run time is the shortest of at least five runs, or of fewer runs if they
+take longer than half a second; a column counts them. Building and compiling are timed separately.
+A second table gives the cost of what a scene leaves out, such as a free body, a full box or a
+moving base. A compiled loop over mj_step takes MuJoCo's steps; Python takes all others. With
+--jobs above 1 processes slow each other down. Takes about 10 minutes.""",
     sources=(*dict.fromkeys(method.source for method in PLAIN.values()), *core_sources()),
-    quick="Fewer cases and settings, shorter timing: some one and a half minutes.",
+    quick="Fewer cases and settings, shorter timing: one and a half minutes.",
     needed=lambda rows: [row for row in rows if row["table"] == ALONG],
     captions={
-        "precision": "Median error of the peak over run time, from coarse to fine: models and "
-        "solvers, and a line for each engine in bands of its presets by default, tuned and "
-        "landing (or error control); a cross where a case fails or has a wrong outcome."
+        "precision": "Median error of the peak against run time, from coarse to fine settings: "
+        "models, solvers, and engines with default, tuned and landing (or error-controlled) "
+        "steps. A cross marks a failed case or a wrong outcome."
     },
     alone=True,
 )

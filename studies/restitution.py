@@ -27,7 +27,7 @@ from studies.cases.refusal import BadInputError
 from studies.cases.ways import WAYS, WITHOUT
 from studies.kit.arguments import Engines
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.say import capital, listed, one_line, out_of
+from studies.kit.say import listed, one_line, out_of
 from studies.kit.study import Figures, Study, Tables
 from studies.sources.registry import scene_of
 
@@ -187,13 +187,13 @@ def finding(tables: Tables) -> str:
     if len(plain) == 1:
         title = ENGINES[plain["engine"].iloc[0]].title
         if sliding:
-            return f"The corner that strikes slides in every way that was tried with {title}."
+            return f"In {title} the striking corner slides with all settings that were tried."
         return f"{title} keeps a coefficient of restitution {within} with its best settings."
-    missed = capital(out_of((plain["off"] > 0.5).sum(), len(plain)))
+    missed = out_of((plain["off"] > 0.5).sum(), len(plain))
     return (
-        f"{missed} engines miss a coefficient of restitution that is set in the plainest way, and "
-        f"with their best settings {out_of((~slides).sum(), len(best))} keep it {within}"
-        f"{f'; the corner slides with {listed(sliding)}' if sliding else ''}."
+        f"With the plainest settings {missed} engines miss a coefficient of restitution; with the "
+        f"best ones {out_of((~slides).sum(), len(best))} keep it {within}"
+        f"{f', and in {listed(sliding)} the corner slides' if sliding else ''}."
     )
 
 
@@ -231,17 +231,17 @@ def figures(tables: Tables) -> Figures:
 
 STUDY = Study.of(
     globals(),
-    question="Which setting gives which coefficient of restitution?",
-    help="""The speed of a corner that strikes the base, once, after over before.
+    question="Which settings give the coefficient of restitution that is set?",
+    help="""The coefficient of restitution of one impact: a corner's speed after over before.
 
-For coefficients from 0 to 1, wherever in a step the impact falls, and at another step, rate, height
-or slenderness; and what the block keeps of its angular rate. Half a minute. Writes restitution.csv,
-corners.csv, findings.txt and a picture.""",
+Coefficients from 0 to 1 are set; the place of the impact within a step varies, and so do step,
+rate, height and slenderness. A column gives the share of its angular rate that the block keeps.
+Takes half a minute. Writes restitution.csv, corners.csv, findings.txt and a picture.""",
     options=Options,
     texts=("way", "varied", "literal"),
     captions={
-        "strikes": "Speed of the striking corner over the coefficient that was asked for, in each "
-        "engine's plainest and best way, this one with a band for all that was varied.",
+        "strikes": "Restitution of the striking corner against the coefficient that is set, with "
+        "each engine's plainest and best settings. Bands: the range over all variations.",
     },
 )
 command = STUDY.command()

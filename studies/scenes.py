@@ -22,7 +22,7 @@ from studies.cases.drawn import calm_frames, slides
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import listed, part
 from studies.kit.study import Figures, Study, Tables
-from studies.measures.presets import engine_of, in_order, is_engine, preset_of
+from studies.measures.presets import engine_of, in_order, is_engine, preset_of, titled
 from studies.measures.wrongness import FALL, NO_ANSWER, WORDS, kind_of
 from studies.sources.registry import Source, core_sources, resolve
 
@@ -294,14 +294,14 @@ def finding(tables: Tables) -> str:
     known = {"the largest rotation of a frame": frames, "a slip of a block": boxes}
     best = {what: lines for what, lines in known.items() if len(lines)}
     if not best:
-        return "No engine that was asked is built for these scenes."
+        return "None of these engines supports these scenes."
     off = [f"{what} by up to {part(lines['max_error'].max())}" for what, lines in best.items()]
     wrong = sum(int(lines["wrong"].sum()) for lines in best.values())
-    beside = f", and predict {wrong} outcomes wrong" if wrong else ""
+    beside = f", with {wrong} wrong outcomes" if wrong else ""
     every = pd.concat([chosen["slide"], drawn["slide"]])
     thrown = every.reindex(columns=["source", "thrown_off"]).query("thrown_off > 0")["source"]
-    lost = f" A block that slides is thrown off the base by {listed(thrown.unique())}."
-    said = f"The engines, each with its best preset, miss {listed(off)}{beside}."
+    lost = f" A sliding block takes off in {listed(map(titled, thrown.unique()))}."
+    said = f"With their best presets engines miss {listed(off)}{beside}."
     return said + lost * (len(thrown) > 0)
 
 
@@ -345,21 +345,21 @@ def _engines_in(lines: pd.DataFrame) -> pd.DataFrame:
 
 STUDY = Study.of(
     globals(),
-    question="Does it hold for frames, friction alone, moving floors?",
-    help="""A frame, a slide, a moving floor, beside their exact solutions.
+    question="Do engines predict frames, sliding blocks and moving floors?",
+    help="""A frame, a sliding block and a moving floor, compared with their exact solutions.
 
-The frame is a beam on two or three free columns, which turn as a block of another size and
-restitution does; the slide is friction alone: two slips under a pulse, a launch, and a hold below
-the onset; it is right only while the block lies flat and is not thrown off. The floor is moved in
-each way that an engine has, and should carry a block along. Steps that land on impacts are asked
-about frames alone. Of frames and slides there are 60 random ones each, which no setting was tuned
-on. What an engine is not built for is a row that says so. Two hours.""",
+A frame is a beam on two or three free columns, which rock like a block of another size and
+restitution. A slide is two slips under a pulse, a launch, or a hold below the onset; it is right
+only if the block stays flat and on the base. The floor moves in each way that an engine offers, and
+should carry a block along. Landing steps apply to frames only. 60 random frames and 60 random
+slides test settings that were not tuned on them. A row says what an engine cannot do. Takes two
+hours.""",
     sources=core_sources("default", "tuned", "landing"),
-    quick="One frame, one slide, two places of the steps, and three random ones of each.",
+    quick="One frame and one slide, two offsets of the steps, three random cases of each.",
     needed=lambda rows: [row for row in rows if row["reason"] != Reason.UNAVAILABLE.name],
     captions={
-        "frame-time": "For each engine and preset the error of a frame's peak from its median to "
-        "the largest, how many outcomes are wrong, and the run time of a case.",
+        "frame-time": "Each engine and preset on frames: the median and the largest error of the "
+        "peak, the number of wrong outcomes, and the run time of a case.",
     },
 )
 command = STUDY.command()

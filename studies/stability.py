@@ -132,11 +132,10 @@ def figures(tables: Tables) -> Figures:
 STUDY = Study.of(
     globals(),
     question="Which methods stay finite, right and accurate in stiff and extreme cases?",
-    help="""Stiff and extreme cases: who stays finite, keeps the outcome and the energy.
+    help="""Stiff and extreme cases: which methods stay finite and keep outcome and energy.
 
-The outcome, the peak and the energy of each method in extreme cases. Takes some minutes. A failure
-is an answer: the exit code is 1 only where a source gives no result at all. Writes stability.csv,
-findings.txt and a picture.""",
+A failed case is a result: the exit code is 1 only if a source gives no result at all. Takes some
+minutes. Writes stability.csv, findings.txt and a picture.""",
     quick="Fewer cases: less than a minute on 2 cores.",
     sources=(
         *("exact", "rk4", "average-acceleration", "dop853", "radau"),
@@ -144,8 +143,8 @@ findings.txt and a picture.""",
     ),
     needed=without_result,
     captions={
-        "stability": "How many of the valid extreme cases each engine predicts with each preset, "
-        "and below the six cases on which the presets differ most.",
+        "stability": "Valid extreme cases that each engine predicts with each preset; below, the "
+        "six cases on which presets differ most.",
     },
 )
 command = STUDY.command()

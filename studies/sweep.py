@@ -92,15 +92,13 @@ def finding(tables: Tables) -> str:
         ends = [name for name in order if name in (order[0], BEST, order[-1])]
         known = presets.groupby("preset").agg({"right": "min", "max": "max"}).loc[ends]
         least = ["all" if n == cases else f"at least {n}" for n in known["right"]]
+        least[0] += f"{' of' * (least[0] != 'all')} {cases} outcomes"
         words = listed(f"{n} {in_words(name)}" for n, name in zip(least, ends, strict=True))
-        errors = "error of a peak is" if len(ends) == 1 else "errors of a peak are"
-        return (
-            f"Engines predict, of {cases} outcomes, {words}; the largest {errors} "
-            f"{listed(map(part, known['max']))}."
-        )
+        errors = listed(map(part, known["max"]))
+        return f"Engines predict {words}; their peaks err by up to {errors}."
     others = lines[lines["source"] != "exact"].sort_values("agree", kind="stable")
     if others.empty:
-        return f"The exact solution has the peaks of {lines['cases'].iloc[0]} cases."
+        return f"The exact solution gives the peaks of {lines['cases'].iloc[0]} cases."
     worst = others.iloc[0]
     return (
         f"{capital(str(worst['source']))} predicts {out_of(worst['agree'], worst['cases'])} "
@@ -240,17 +238,17 @@ STUDY = Study.of(
     question="Do the engines and the linearizations predict the paper's cases?",
     help="""The paper's sensitivity analysis, figures 6 to 9.
 
-240 cases a figure, which are 120 problems in two sizes that similarity makes alike. Half a minute
-with the default sources. A run that was interrupted goes on when the same command is given again.
-Writes sweep.csv, summary.csv, findings.csv, findings.txt and a picture of each figure.""",
+Each figure has 240 cases: 120 problems, each in two similar sizes. Takes half a minute with the
+default sources. To continue an interrupted run, give the same command again. Writes sweep.csv,
+summary.csv, findings.csv, findings.txt and a picture of each figure.""",
     sources=("exact", "housner", "modified", "onset-matched", *core_sources()),
     options=Options,
     rows="sweep",
     captions={
-        "overview": "For each engine and preset the error of the peak from its median to the "
-        "largest, how many outcomes are wrong, and the run time of a case.",
-        "figure": "The largest rotation over the frequency of the pulse, a row for each H/B and a "
-        "column for each B, who overturns (band), and below the errors.",
+        "overview": "Each engine and preset: the median and the largest error of the peak, the "
+        "number of wrong outcomes, and the run time of a case.",
+        "figure": "Largest rotation against the frequency of the pulse. Marks in the band: the "
+        "source overturns the block. Lowest panels: the errors.",
     },
 )
 command = STUDY.command()

@@ -126,12 +126,12 @@ def finding(tables: Tables) -> str:
     if "factors" in tables:
         high = tables["factors"]["factor_95_high"]
         if np.isinf(high).all():
-            return f"So few random cases give no factor that bounds {part(BOUNDED)} of the errors."
+            return f"Too few random cases for a factor that bounds {part(BOUNDED)} of the errors."
         good = high[high <= MOST_TRUSTED]
         most = MOST_TRUSTED if good.empty else good.max()
         return (
-            f"The difference from half the step, times at most {most:.2g}, bounds {part(BOUNDED)} "
-            f"of the errors with {out_of(len(good), len(high))} presets."
+            f"Halve the step, and multiply the change by {most:.2g}: this bounds {part(BOUNDED)} "
+            f"of the errors of {out_of(len(good), len(high))} presets."
         )
     errors = tables["errors"]
     if len(others := errors[errors["source"] != "exact"]):
@@ -180,19 +180,18 @@ def figures(tables: Tables) -> Figures:
 
 STUDY = Study.of(
     globals(),
-    question="Do the sources predict random cases that no setting was tuned on?",
-    help="""Random blocks: H/B from 1.2 to 12, B from 0.02 to 10 m; pulses of 1.02 to 4 onsets.
+    question="Do sources predict random cases, on which no setting was tuned?",
+    help="""Random blocks (H/B 1.2 to 12, B 0.02 to 10 m) under pulses of 1.02 to 4 times the onset.
 
-Outcomes, quantiles of the error, and how far a small error of the pulse moves the peak of each
-case: its condition numbers, and its sensitivity to errors of 1e-6 to 1e-3. Writes errors.csv.
-With --halves it writes estimate.csv, estimates.csv and factors.csv: how far off an answer is
-according to the engine itself at half the step. Each needs a folder of its own.""",
+Writes errors.csv: outcomes, quantiles of the error, condition numbers, and the sensitivity of each
+peak to errors of 1e-6 to 1e-3. With --halves, in another folder, it estimates each error from the
+same engine at half the step, and writes estimate.csv, estimates.csv and factors.csv.""",
     sources=core_sources(),
     options=Options,
-    quick="Fewer random cases: 100; with --halves 20, and 10 that test.",
+    quick="100 random cases; with --halves 20, and 10 to test the factors.",
     captions={
-        "validate": "Errors of random cases in bands of S, how far small errors of the pulse or of "
-        "the impacts move a peak: for each engine the middle half, the median, and the ends.",
+        "validate": "Errors of random cases in bands of the sensitivity S: for each engine the "
+        "median, the middle half and the extremes.",
     },
 )
 command = STUDY.command()

@@ -84,17 +84,17 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part(
             *("sweep", "sweep"),
             quick=("--accuracy", "loose"),
-            weaker="The engines step at the accuracy loose instead of standard.",
+            weaker="Engines run at accuracy loose instead of standard.",
         ),
         Part(
             *("presets", "sweep"),
-            "Do engines predict them with their default settings, and with tuned ones?",
+            "How well do engines predict them with default and with tuned settings?",
             quick=("--figure", "8", "--sources", "exact", "core:default"),
             full=(
                 *("--sources", "exact", "engines:default", "engines:default-at-rest"),
                 *("engines:recommended", "engines:tuned", "engines"),
             ),
-            weaker="Figure 8 stands for all four; no tuned preset with a fixed step is asked.",
+            weaker="Only figure 8 of four, and no tuned preset.",
         ),
     ),
     "The paper's histories and linearizations": (
@@ -104,11 +104,11 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
     "Random cases": (
         Part("validate", "validate"),
         Part(
-            *("estimate", "validate", "How far off is a peak where there is no exact solution?"),
+            *("estimate", "validate", "How large is an error without an exact solution?"),
             always=("--halves",),
             quick=("--quick", "--sources", "core", "core:tuned", "core:default"),
             full=("--sources", "core", "core:tuned", "core:default"),
-            weaker="So few random cases that no factor has an upper end.",
+            weaker="Too few random cases to bound any factor.",
         ),
     ),
     "Error against run time": (Part("precision", "precision"),),
@@ -116,7 +116,7 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part("advice", "advise", quick=("--quick", "--engines", "pybullet", "mujoco")),
         Part("contact", "contact"),
         Part(
-            *("contact-frames", "contact", "What does each setting cost and buy on frames?"),
+            *("contact-frames", "contact", "How much does each setting matter on frames?"),
             always=("--scene", "frame"),
         ),
         Part("restitution", "restitution", quick=()),
@@ -126,7 +126,7 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part("overturning", "overturning"),
         Part(
             *("defaults", "overturning"),
-            "Where do engines predict a wrong overturning with their default settings?",
+            "Where do engines fail with default settings?",
             full=("--sources", "engines:default"),
             quick=("--quick", "--sources", "core:default"),
         ),

@@ -129,5 +129,5 @@ def test_the_best_way_does_not_slide_and_a_tie_goes_to_what_is_usually_closer():
     corners = pd.DataFrame(lines, columns=["engine", "way", "off", "off_over_all", "slide"])
     assert best_of(corners)["way"].tolist() == ["a", "a", "b"]
     words = finding({"corners": corners})
-    assert "1 of 3" in words and "2 of 3" in words and "0.2;" in words and "Rapier" in words
+    assert "1 of 3" in words and "2 of 3" in words and "0.2," in words and "Rapier" in words
     assert "Rapier" in finding({"corners": corners[corners["engine"] == "rapier"]})

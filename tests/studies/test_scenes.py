@@ -69,14 +69,14 @@ def test_the_finding_takes_the_worst_engine_of_the_best_presets():
     names = ("random-frame-summary", "random-slide-summary", "frame-summary", "slide-summary")
     none = dict.fromkeys(names, pd.DataFrame())
     words = finding(none | {"random-frame-summary": frames})
-    assert "20 %" in words and "1 outcomes" in words and "50 %" not in words
+    assert "20 %" in words and "1 wrong" in words and "50 %" not in words
     slides = pd.DataFrame({
         "source": ["exact", "drake:default"], "max_error": 0.0, "wrong": [0, 1],
         "thrown_off": [0, 1],
     })  # fmt: skip
     words = finding(none | {"random-slide-summary": slides})
-    assert "1 outcomes" in words and "drake:default" in words
-    assert "No engine" in finding(none | {"slide-summary": slides[:1]})
+    assert "1 wrong" in words and "Drake" in words
+    assert "None" in finding(none | {"slide-summary": slides[:1]})
 
 
 def test_random_frames_are_summed_up_beside_the_critical_rotation():

@@ -40,4 +40,4 @@ def test_the_finding_of_presets_names_the_worst_engine_of_the_best():
         }
     )  # fmt: skip
     words = sweep.finding({"summary": lines})
-    assert "of 10 outcomes, at least 2 " in words and "at least 9 " in words
+    assert "at least 2 of 10 outcomes" in words and "at least 9 " in words
