@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from base64 import b64encode
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -30,7 +29,7 @@ from studies.kit.run import makers_of, run
 from studies.kit.say import duration, in_columns, one_line, out_of, part, say
 from studies.kit.store import FolderError, Store, check, engines_of, provenance_of
 from studies.kit.study import Figures, Study, Tables
-from studies.kit.tables import table_in, write_text
+from studies.kit.tables import table_in
 from studies.measures import world
 from studies.measures.costs import joint
 from studies.measures.differences import summarize, with_reference
@@ -285,7 +284,7 @@ def command(
             store.kept({job.key: job for job in asked}, makers_of(asked, measure))
     check_model(engine, [job for job in asked if job.labels["part"] == MODEL], running)
     code = STUDY.carry_out(out, asked, running, engine=name, quick=quick)
-    write_page(out)
+    STUDY.hand_on(out, "score.html.jinja")
     if earlier is None:
         return code
     versions, then = earlier
@@ -302,28 +301,6 @@ def check_model(engine: str, asked: Sequence[Job], running: Running) -> None:
     lines = model(pd.DataFrame(rows))
     whole = lines[lines["source"] == world.checked(engine_of(asked[0].source))]
     say(f"model check:\n{in_columns(whole)}")
-
-
-def write_page(folder: Path) -> None:
-    """Write a page to hand on, of the tables and pictures of a folder."""
-    from jinja2 import Environment, PackageLoader
-
-    tables = STUDY.read(folder)
-    page = Environment(loader=PackageLoader("studies", "."), autoescape=True)
-    text = page.get_template("score.html.jinja").render(
-        finding=finding(tables).split("\n\n"),
-        tables={
-            title: table.to_html(index=False, float_format="{:.4g}".format)
-            for title, table in shown(tables).items()
-            if len(table)
-        },
-        pictures={
-            STUDY.caption_of(path.stem): b64encode(path.read_bytes()).decode()
-            for path in sorted(folder.glob("*.png"), reverse=True)
-        },
-        made=provenance_of(folder),
-    )
-    write_text(folder / "score.html", text)
 
 
 def known(engine: str) -> str:

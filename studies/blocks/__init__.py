@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from hashlib import sha256
@@ -31,9 +30,7 @@ from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
 from studies.kit.options import Running
 from studies.kit.say import capital, out_of
 from studies.kit.scene_options import window_of
-from studies.kit.store import provenance_of
 from studies.kit.study import Figures, Study, Tables
-from studies.kit.tables import write_text
 from studies.measures.presets import is_engine
 
 APART = 0.01
@@ -75,8 +72,6 @@ COLUMNS = [
 ]
 TAKEN = (*COLUMNS, "no_margin")
 """Names that no further column of a list may have."""
-MOST_LISTED = 60
-"""Rows of a table on the page."""
 MANY = 100
 """Searches from which on they run in processes, beside each other."""
 FLAT, SLIDES_FIRST = "slides", "slides first"
@@ -342,8 +337,6 @@ def command(
         Correct the records by what scipy.signal.detrend takes away: their mean (constant) or the
         line that fits them best (linear).
     """
-    from jinja2 import Environment, PackageLoader
-
     arguments.refuse_repeats("--scale", scale)
     arguments.refuse_repeats("--record", [Path(path.name) for path in record])
     grounds = {
@@ -359,29 +352,12 @@ def command(
     code = STUDY.carry_out(
         out, found, running, record=[*grounds], record_dt=record_dt, pga=pga, **given
     )
-    tables = STUDY.read(out)
-    pages = Environment(loader=PackageLoader("studies.blocks", "."), autoescape=True)
-    listing = shown(tables)
-    page = pages.get_template("page.html.jinja").render(
-        finding=finding(tables).split("\n\n"),
-        pictures=[
-            (STUDY.caption_of(name), b64encode((out / f"{name}.png").read_bytes()).decode())
-            for name in ("blocks", "fragility")
-            if (out / f"{name}.png").is_file()
-        ],
+    STUDY.hand_on(
+        out,
+        "blocks/page.html.jinja",
         records=[(name, ground, trace(ground)) for name, ground in grounds.items()],
-        found=tables["blocks"].drop_duplicates("record").set_index("record"),
-        tables={
-            title: table.head(MOST_LISTED).to_html(
-                index=False, na_rep="–", float_format="{:.3g}".format, border=0
-            )
-            for title, table in listing.items()
-        },
-        more={title: len(table) - MOST_LISTED for title, table in listing.items()},
         rules={"APART": APART, "WIDTH": WIDTH, "MOST_ONSETS": MOST_ONSETS},
-        made=provenance_of(out),
     )
-    write_text(out / "blocks.html", page)
     return code
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -17,7 +18,7 @@ from studies.kit.jobs import Job, Row, answer
 from studies.kit.options import Running
 from studies.kit.run import exit_code, makers_of, run
 from studies.kit.say import as_text
-from studies.kit.store import Store
+from studies.kit.store import Store, provenance_of
 from studies.kit.tables import read_table, tables_of, write_text
 
 if TYPE_CHECKING:
@@ -133,6 +134,25 @@ class Study:
         text = as_text(self.finding(tables), self.shown(tables))
         write_text(folder / "findings.txt", text + "\n")
         return text
+
+    def hand_on(self, folder: Path, template: str, **more: Any) -> None:
+        """Write a page to hand on of the tables and pictures of a folder, from a template."""
+        from jinja2 import Environment, PackageLoader
+
+        pages = Environment(loader=PackageLoader("studies", "."), autoescape=True)
+        tables = self.read(folder)
+        text = pages.get_template(template).render(
+            finding=self.finding(tables).split("\n\n"),
+            tables=self.shown(tables),
+            pictures=[
+                (self.caption_of(path.stem), b64encode(path.read_bytes()).decode())
+                for path in sorted(folder.glob("*.png"))
+            ],
+            found=tables,
+            made=provenance_of(folder),
+            **more,
+        )
+        write_text(folder / f"{self.name}.html", text)
 
     def caption_of(self, figure: str) -> str:
         """Return what is seen in a figure, by the longest beginning of its name that has words."""
