@@ -19,7 +19,7 @@ from studies.advise import cheapest, pairs
 from studies.advise import unadvised as not_advised
 from studies.cases.variants import AT_ONCE
 from studies.kit.identity import NOT_INSTALLED
-from studies.kit.say import capital, duration, listed, part, signed
+from studies.kit.say import capital, duration, listed, number, part, signed
 from studies.kit.store import engines_of, provenance_of, whole_runs
 from studies.kit.tables import table_in
 from studies.measures.costs import cost_text
@@ -124,8 +124,8 @@ def advised(published: Path) -> list[list[str]]:
 def pasted(published: Path) -> list[dict[str, Any]]:
     """Return what pasted lines are worth, for each engine and step, and the lines.
 
-    Cells are of a step with the place of its lines, errors, wrong outcomes and run time, by default
-    and pasted; own says whether the step is the library's own.
+    Cells are of a step with the place of its lines, errors, wrong outcomes, turns, slips and run
+    time, by default and pasted; own says whether the step is the library's own.
     """
     known = table_in(published / "advice", "lines", "literal")
     found: list[dict[str, Any]] = []
@@ -134,8 +134,8 @@ def pasted(published: Path) -> list[dict[str, Any]]:
         place, title = f"{engine}-{1e6 * dt_s:.0f}", f"{TITLES[engine]}, {duration(dt_s)}"
         cells = [
             (part(line["median_error"]), part(line["max_error"]), part(line["median_difference"]),
-             str(sum(line[kind] for kind in KINDS)), part(line["ill_max_error"]),
-             duration(line["wall_s"])) for line in both
+             _wrong(line), part(line["ill_max_error"]), number(line["yaw_deg"]),
+             part(line["slip_widths"]), duration(line["wall_s"])) for line in both
         ]  # fmt: skip
         found.append(
             {
