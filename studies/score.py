@@ -15,14 +15,12 @@ from cyclopts import Parameter
 from analytic.motion import Still
 from engines import ENGINES
 from engines.declaration import AT_REST
-from engines.registry import named
 from engines.settings import perhaps
 from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments
 from studies.kit.arguments import Out, Place
 from studies.kit.cluster import place_of
-from studies.kit.foreign import apart
 from studies.kit.jobs import Job, Question, Row, answer, unanswered
 from studies.kit.options import Running
 from studies.kit.run import makers_of, run
@@ -316,7 +314,7 @@ def known(engine: str) -> str:
         raise BadInputError(f"ENGINE is {engine!r}{near}; it must be one of {words}")
     sys.path.append(str(Path.cwd()))  # not first: what this process imports is found before it
     try:
-        return announce(engine, partial(apart, named))
+        return announce(engine)
     except ValueError as error:
         raise BadInputError(f"ENGINE: {error}") from error
 

@@ -1,22 +1,19 @@
 """Fixtures of more than one file of tests."""
 
 from collections import Counter
-from contextlib import nullcontext
 
 import pytest
 
 from engines import registry
-from studies.kit import foreign
 from studies.kit.jobs import Job
 from studies.sources.registry import SOURCES
 
 
 @pytest.fixture(autouse=True)
 def in_this_process(request, monkeypatch):
-    """Let no job and no engine need a process of its own, but in tests of what these do."""
+    """Let no job need a process of its own, but in tests of what these do."""
     if "processes" not in request.keywords:
         monkeypatch.setattr(Job, "needs_process", False)
-        monkeypatch.setattr(foreign, "tried_apart", nullcontext)
 
 
 @pytest.fixture

@@ -140,17 +140,15 @@ def _answer(groups: Groups, arguments: Sequence[str]) -> int:
         if not argument.strip() or (name.startswith("--") and equals and not value.strip()):
             return say.refuse(f"{name.strip() or before} is empty; it must be given")
     from studies.cases.refusal import BadInputError
-    from studies.kit import foreign
 
     try:
-        with foreign.tried_apart():
-            code = make_app(groups, arguments[0] if arguments else "")(
-                arguments,
-                exit_on_error=False,
-                print_error=False,
-                verbose=False,
-                result_action="return_value",
-            )
+        code = make_app(groups, arguments[0] if arguments else "")(
+            arguments,
+            exit_on_error=False,
+            print_error=False,
+            verbose=False,
+            result_action="return_value",
+        )
     except UnknownOptionError as error:
         return say.refuse(_unknown_option(error))
     except (CycloptsError, BadInputError) as error:
