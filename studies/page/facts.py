@@ -53,24 +53,24 @@ def presets(published: Path) -> pd.DataFrame:
 def by_engine(published: Path) -> list[list[str]]:
     """Return the cells of the README's table, a row for each engine.
 
-    They are wrong outcomes, median error and its share of theta_cr with default settings, on a
-    moving floor and on one at rest; wrong outcomes, largest error and time of the tuned preset;
+    They are wrong outcomes, median error and its share of theta_cr with default settings and a
+    moving floor; the first two with a floor at rest; wrong outcomes, largest error and time of the tuned preset;
     largest error and time of landing, or of the engine's own steps.
     """
     rows = []
     for name, lines in presets(published).groupby("engine", sort=False):
         known = {str(line["preset"]): line for line in lines.to_dict("records")}
         cells = [f"<b>{TITLES[str(name)]}</b>"]
-        for preset in (DEFAULT, AT_REST):
-            line = known[preset]
-            cells += [_wrong(line), part(line["median"]), part(line["share"])]
-        tuned, best = known["tuned"], ENGINES[str(name)].best
-        cells += [_wrong(tuned), part(tuned["max"]), duration(tuned["ms"] / 1e3)]
+        moving, rests, tuned = (known[preset] for preset in (DEFAULT, AT_REST, "tuned"))
+        cells += [_wrong(moving), part(moving["median"]), part(moving["share"])]
+        cells += [_wrong(rests), part(rests["median"])]
+        best = ENGINES[str(name)].best
+        cells += [_wrong(tuned), part(tuned["max"]), f"{tuned['ms']:.0f} ms"]
         if best.name == "tuned":
             cells += ["–", "–"]
         else:
             line, own = known[best.name], "" if best.stepping is Stepping.LANDING else "¹"
-            cells += [part(line["max"]) + own, duration(line["ms"] / 1e3)]
+            cells += [part(line["max"]) + own, f"{line['ms']:.0f} ms"]
         rows.append(cells)
     return rows
 
