@@ -74,11 +74,11 @@ def command(
     quick: bool = False,
     running: Running = Running(),  # noqa: B008
 ) -> int:
-    """Say what to paste so that a free box on a floor at rest rocks right, and what it is worth.
+    """Print the lines with which a free box on a floor at rest rocks accurately, and their errors.
 
-    Of one engine the lines, in the library's words, what they are worth on 60 random boxes, where
-    they fail and where they are from; of several what they are worth. It runs nothing: it reads the
-    published tables. With --out it measures them again, in ten minutes.
+    For one engine it prints the lines to paste, their errors on 60 random boxes, where they fail,
+    and their sources; for several engines the errors only. It reads the published tables, and runs
+    nothing. With --out it measures them again, in ten minutes.
 
     Parameters
     ----------
@@ -89,8 +89,8 @@ def command(
     friction
         Your coefficient of friction between box and floor.
     error
-        Instead, the cheapest setting of each preset whose peaks keep these relative errors [-] in
-        the published cases, as every finer step does.
+        Print instead the cheapest setting of each preset with relative errors below these values
+        in all published cases, at its step and at every finer one.
     out
         Folder for the tables of a new run; none by default.
     quick

@@ -34,7 +34,7 @@ def command(
     sources: Sources = DEFAULT_SOURCES,
     computing: Computing = Computing(),  # noqa: B008
 ) -> int:
-    """A film of one block, frame or slide, as several sources move it side by side.
+    """Film one block, frame or slide as several sources compute it, side by side.
 
     Parameters
     ----------
@@ -50,7 +50,9 @@ def command(
         words = "that needs the extra [video]: pip install imageio-ffmpeg"
         raise BadInputError(f"--out is an .mp4; {words}")
     if len(sources) > MOST_SOURCES:
-        raise BadInputError(f"--sources are {len(sources)}; they must be at most {MOST_SOURCES}")
+        raise BadInputError(
+            f"--sources has {len(sources)} names; it may have at most {MOST_SOURCES}"
+        )
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
     window = window_of(system, motion, dt=yours.dt)

@@ -31,15 +31,16 @@ LEAST_BYTES = 5e8
 
 
 def command(*, time_limit: TimeLimit = 600.0) -> int:
-    """Does this installation work? Some ten lines to paste into a report.
+    """Check this installation, in ten lines to paste into a report.
 
-    Versions, where compiled functions are kept, cores and disk; and one block in each engine that
-    is here, in a process of its own. Exit code 1 when something fails; its line says what to do.
+    It prints versions, the cache of compiled functions, cores and disk, and simulates one block in
+    each installed engine, in a separate process. If something fails, the exit code is 1, and its
+    line says what to do.
 
     Parameters
     ----------
     time_limit
-        Wall-clock time [s] that an engine may take; some compile themselves when first used.
+        Wall-clock time [s] for each engine; some compile themselves at the first use.
     """
     remedies = []
     for found, remedy in chain(surroundings(), engines(time_limit)):

@@ -42,18 +42,17 @@ def command(
     yours: Yours = Yours(),  # noqa: B008
     time_limit: TimeLimit = 60.0,
 ) -> int:
-    """Write a scene as a script that needs an engine's library alone, with what to expect of it.
+    """Write a scene as a script that needs only an engine's library, with its expected result.
 
-    The script is Python, with the model beside it where the library has a format for one, and the
-    ground motion; it says whether it finds the peak that this project finds.
+    The folder holds a Python script, the ground motion and, if the library has a format for it, the
+    model. The script checks that its peak is the one that this project computes.
 
     Parameters
     ----------
     engine
-        Name of an engine; after a colon its preset, one with equal steps, by default tuned.
+        Name of an engine, and after a colon a preset with equal steps; by default tuned.
     out
-        Folder for the files, a new or an empty one: block.py, ground.py and the model, where the
-        library reads one.
+        New or empty folder for block.py, ground.py and, if the library reads one, the model.
     p_dt
         Step in units of 1/p; by default the preset's.
     time_limit
@@ -82,7 +81,7 @@ def command(
     exact, found = (each.slips if slides else each.peak_ratio for each in answers)
     if answers[-1].outcome is Outcome.AT_REST:
         raise BadInputError(
-            f"--engine is {engine!r}; what is exported must move there, and stays at rest"
+            f"--engine is {engine!r}; an exported scene must move, and in this engine it stays at rest"
         )
     use = ENGINES[name].use(scene)
     texts = files(use, found, exact)

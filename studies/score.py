@@ -256,22 +256,21 @@ def command(
 ) -> int:
     """Score one engine: the paper's cases, errors along the step, extreme cases, slides and frames.
 
-    First a model check: ten quantities of one block, each with what it must be. A world that fails
-    in it, has a wrong sign, or declares another `Moment` than the one at which its velocities hold,
-    is refused; any other wrong quantity makes the exit code 1. Writes tables, findings.txt and
-    score.html. With --against, the exit code is 0 whatever failed.
+    It begins with a model check of ten quantities of one block. A world that fails, has a wrong
+    sign, or declares another `Moment` than the one at which its velocities hold, is refused; any
+    other wrong quantity makes the exit code 1. Writes tables, findings.txt and score.html. With
+    --against the exit code is always 0.
 
     Parameters
     ----------
     engine
-        Its name, perhaps with one of its presets after a colon; or MODULE:ENGINE where its
-        declaration stands, or MODULE:build of what builds its world, in this folder or among the
-        installed packages.
+        NAME or NAME:PRESET of a known engine; or MODULE:ENGINE of a declaration, or MODULE:build of
+        a function or class that builds a world, in this folder or an installed package.
     quick
-        Every 11th case of two figures, every other step, fewer extremes: a minute or two.
+        Every 11th case of two figures, every other step, fewer extreme cases: a minute or two.
     against
-        Results of the same engine, of an earlier release or another environment: what moved since
-        is said.
+        Folder of the same engine's results with an earlier release or in another environment; what
+        has changed since is printed.
     """
     name = known(engine)
     # what cannot be compared with it is refused now, and not after the last run

@@ -308,12 +308,12 @@ def command(
     sources: arguments.Sources = ("exact",),
     running: Running = Running(),  # noqa: B008
 ) -> int:
-    """Which blocks of a list overturn under recorded ground motions, with what margin?
+    """Find which blocks of a list overturn under recorded ground motions, and their margins.
 
-    The exact solution always answers, and its factors are the margins. A block with friction below
-    B/H slides, and where the friction is less than the rocking needs its row says "slides first";
-    neither has a margin. Forty blocks under one record take seconds.
-    A run that was interrupted goes on when the same command is given again. Writes blocks.csv,
+    The exact solution is always computed, and gives the margins. A block with friction below B/H
+    slides; one whose rocking needs more friction than it has is marked "slides first". Neither has
+    a margin. Forty blocks under one record take seconds.
+    To continue an interrupted run, give the same command again. Writes blocks.csv,
     findings.txt, a picture that ranks the blocks, and blocks.html to hand on.
 
     Parameters

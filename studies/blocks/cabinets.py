@@ -115,7 +115,7 @@ def _rows(
     for head in {*heads} - {*NEEDED, "friction"}:
         if head in taken:
             raise ValueError(
-                f"its column {head!r} must be renamed, as results have one of that name"
+                f"its column {head!r} must be renamed, since the results have a column of that name"
             )
         if not head or head.lower() in MEANT or get_close_matches(head.lower(), MEANT, cutoff=0.7):
             raise ValueError(f"its column {shown(head)} must have a name, friction if it is that")
@@ -130,7 +130,7 @@ def _cabinet(cells: Cells, units: Cells) -> Cabinet:
     """Return the block of a line; ValueError says its first bad value, and what it must do."""
     if not cells:
         words = "have one for each column; decimal commas need semicolons between columns"
-        raise ValueError("it has more cells or fewer than the names", words)
+        raise ValueError("it must have a cell for each name", words)
     if not (0 < len(name := cells["name"]) <= 300 and name.isprintable()):
         raise _bad("name", name, "be 1 to 300 letters, without ends of lines, tabs and the like")
     width, height = (_number(cells, name, units[name]) for name in NEEDED[1:])

@@ -59,27 +59,27 @@ def command(
     json: bool = False,
     computing: Computing = Computing(),  # noqa: B008
 ) -> int:
-    """One block and one pulse or record through every source, side by side.
+    """Compare sources on one block and one pulse or record.
 
-    For each source: the outcome, the largest rotation over the critical one θcr = atan(B/H), the
-    relative error of that, the impacts and the largest error of the first five impact times, times
-    p; the steps and the run time. All observe the same window of time. Of the exact solution: κ and
-    the sensitivity, and what it needs of its contact: friction, and a normal force (over the
-    weight) that stays positive, else an engine is right to differ.
+    For each source it prints the outcome, the peak rotation over θcr = atan(B/H) and its relative
+    error, the impacts, the largest error of the first five impact times (times p), the steps and
+    the run time. All sources observe the same window of time. For the exact solution it prints κ,
+    the sensitivity, the friction it needs and its least normal force over the weight: if this is
+    negative the block lifts off, and an engine rightly differs.
 
     Parameters
     ----------
     duration
-        Observe until this time [s], at least the length of the motion; by default the motion and
-        8/p of free rocking.
+        Observe until this time [s], at least the end of the motion; by default until 8/p after
+        it.
     estimate
-        Run every engine at half the step, too: the relative difference of the two peaks, and that
-        times the factor which bounds 95 % of the errors on random cases, or that there is no such
-        bound (`rocking validate --halves`).
+        Also run every engine at half the step, and print the relative difference of the two peaks,
+        and a bound on the error: that difference times the factor that bounds 95 % of the errors on
+        random cases, if there is one (`rocking validate --halves`).
     plot
-        Draw the time histories over each other into this file (.png, .pdf or .svg).
+        Draw all time histories into this file (.png, .pdf or .svg).
     json
-        Print one JSON object for each source, one a line, instead of the table.
+        Print one JSON object per line for each source, instead of the table.
     """
     if standing.scene == "slide":
         refuse_given({"plot": plot}, "only where something rocks")

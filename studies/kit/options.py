@@ -32,11 +32,11 @@ class Computing:
     Attributes
     ----------
     jobs
-        Processes for the engines; by default the number of cores.
+        Processes that run engines; by default one per core.
     time_limit
-        Wall-clock time [s] after which an engine's case is given up.
+        Wall-clock time [s] after which a case of an engine fails.
     cluster
-        Address of a Dask scheduler, whose workers then run all cases, as in tcp://127.0.0.1:8786.
+        Address of a Dask scheduler whose workers run all cases, such as tcp://127.0.0.1:8786.
     """
 
     jobs: Count | None = None
@@ -61,8 +61,8 @@ class Running(Computing):
     Attributes
     ----------
     also
-        Folders of the same command's results, whose rows are taken over: of engines that are
-        installed elsewhere, or of another machine.
+        Further folders of the same command's results, such as those of engines that are installed
+        elsewhere; their rows are added.
     """
 
     also: Annotated[tuple[Place, ...] | None, several_or_none] = None
@@ -76,9 +76,9 @@ class EffortOptions:
     Attributes
     ----------
     p_dt
-        Step of the solvers and engines in units of 1/p; by default their own.
+        Step of solvers and engines in units of 1/p; by default their own.
     accuracy
-        loose, standard or tight, for engines whose steps land on impacts; standard by default.
+        Accuracy of engines with landing steps; by default standard.
     """
 
     p_dt: Step | None = None
@@ -118,10 +118,10 @@ class Yours:
     Attributes
     ----------
     friction
-        Coefficient of friction between block and base, in the engines; by default the preset's. The
-        models do not slide: where it is less than the exact solution needs, its row says so.
+        Coefficient of friction between block and base in engines; by default the preset's. Models do
+        not slide: if the exact solution needs more friction, its row says so.
     dt
-        Step [s] of the solvers, and of engines whose preset takes equal steps.
+        Step [s] of solvers, and of engines whose preset takes equal steps.
     """
 
     friction: NotNegative | None = None

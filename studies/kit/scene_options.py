@@ -47,8 +47,8 @@ class Excitation:
     Attributes
     ----------
     amplitude
-        Amplitude of the ground acceleration [g of 9.81 m/s²], positive: the mirror image of a pulse
-        has the mirror image of its response.
+        Amplitude of the ground acceleration [g = 9.81 m/s²]; it must be positive, since a mirrored
+        pulse mirrors the response.
     omega
         Circular frequency of the pulse [rad/s].
     pulse
@@ -56,30 +56,29 @@ class Excitation:
     half_cycles
         Number of half cycles, instead of --pulse.
     phase
-        Phase [rad] of the pulse at its begin; 1.5708 makes it a cosine.
+        Phase [rad] at the start of the pulse; 1.5708 makes it a cosine.
     record
-        A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, or
-        a table of time [s] and acceleration, or one column. It is straight between its samples.
+        A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, a
+        table of time [s] and acceleration, or one column of acceleration.
     record_dt
-        Time [s] between the samples of a file that does not state it: of one column.
+        Time [s] between samples, for a file of one column.
     units
-        Of the record's acceleration: needed where the file does not state them, refused where it
-        states others. g is 9.81 m/s².
+        Unit of the record's acceleration, for a file that does not state it; one that contradicts
+        the file is refused. g is 9.81 m/s².
     scale
         Factor on the record's acceleration.
     pga
         Scale the record to this largest absolute acceleration [g].
     baseline
-        Correct the record, before it is scaled, by what scipy.signal.detrend takes away: its mean
-        (constant) or the line that fits it best (linear). By default it is taken as it is, and what
-        velocity it leaves the base with is reported.
+        Before scaling, subtract the record's mean (constant) or best-fitting line (linear) with
+        scipy.signal.detrend. By default nothing is subtracted, and the velocity of the base at the
+        end is reported.
     tilt
-        Rotation from which the block starts, in units of α; it stands on the corner that it leans
-        towards, to the right where positive. Without a pulse or record it is released on ground
-        that does not move.
+        Initial rotation in units of α; a block with a positive one leans to the right. Without a
+        pulse or record the block is released on ground at rest.
     rate
-        Angular velocity with which it starts, in units of αp; that of an upright block says about
-        which corner it turns.
+        Initial angular velocity in units of αp; for an upright block its sign selects the corner
+        about which it turns.
     """
 
     amplitude: Positive | None = None
@@ -190,9 +189,9 @@ class Standing:
         block: one block that rocks. frame: a beam on columns that rock, of --width and --height
         each, with --load. slide: one block that slides, by a --friction below B/H.
     columns
-        Of a frame, from 2 to 100.
+        Number of columns of a frame, from 2 to 100.
     load
-        Of a frame: the mass of its beam over that of all columns.
+        Mass of a frame's beam over the mass of all columns.
     """
 
     scene: Annotated[SceneName, one_of(SceneName)] = "block"

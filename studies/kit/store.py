@@ -93,7 +93,9 @@ class Store:
             words = "it must not be in use by another run" if busy else f"its {ROWS}: {error}"
             raise FolderError(folder, words) from error
         if known != [study]:
-            raise FolderError(folder, f"it holds results of {known[0]}; {study} needs another one")
+            raise FolderError(
+                folder, f"it holds results of {known[0]}; {study} needs another folder"
+            )
         self.filled = fresh and (folder / PROVENANCE).is_file()
 
     def __enter__(self) -> Self:

@@ -54,8 +54,8 @@ def by_engine(published: Path) -> list[list[str]]:
     """Return the cells of the README's table, a row for each engine.
 
     They are wrong outcomes, median error and its share of theta_cr with default settings and a
-    moving floor; the first two with a floor at rest; wrong outcomes, largest error and time of the tuned preset;
-    largest error and time of landing, or of the engine's own steps.
+    moving floor; the first two with a floor at rest; wrong outcomes, largest error and time of the
+    tuned preset; largest error and time of landing, or of the engine's own steps.
     """
     rows = []
     for name, lines in presets(published).groupby("engine", sort=False):

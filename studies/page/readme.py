@@ -48,7 +48,7 @@ SOURCES = ("exact", "housner", *core_sources(AT_REST), *core_sources(BEST), *MOV
 def command(*, root: Path = Path()) -> int:
     """Write README.md and the pages in studies/published, with their pictures, from the tables.
 
-    Every number in them is computed from studies/published, and so are words such as "all".
+    All numbers in them are computed from studies/published, and so are words such as "all".
 
     Parameters
     ----------

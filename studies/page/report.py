@@ -19,15 +19,15 @@ PAGE = "report.html"
 def command(*, out: Place, full: bool = False) -> int:
     """Run every study and write one self-contained page about them, report.html.
 
-    The quick studies take some six minutes on two cores, the full ones two and a half hours. A
-    report that was interrupted goes on when the same command is given again.
+    The quick studies take six minutes on two cores, the full ones two and a half hours. To continue
+    an interrupted report, give the same command again.
 
     Parameters
     ----------
     out
         Folder for the results, one inside for each study, and for report.html.
     full
-        The full studies, as published, instead of the quick ones.
+        Run the full studies, as published, instead of the quick ones.
     """
     from studies.page.page import write_page
 
