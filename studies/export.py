@@ -81,7 +81,7 @@ def command(
     exact, found = (each.slips if slides else each.peak_ratio for each in answers)
     if answers[-1].outcome is Outcome.AT_REST:
         raise BadInputError(
-            f"--engine is {engine!r}; an exported scene must move, and in this engine it stays at rest"
+            f"--engine is {engine!r}; an exported scene must move there, and stays at rest"
         )
     use = ENGINES[name].use(scene)
     texts = files(use, found, exact)

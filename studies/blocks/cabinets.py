@@ -130,7 +130,7 @@ def _cabinet(cells: Cells, units: Cells) -> Cabinet:
     """Return the block of a line; ValueError says its first bad value, and what it must do."""
     if not cells:
         words = "have one for each column; decimal commas need semicolons between columns"
-        raise ValueError("it must have a cell for each name", words)
+        raise ValueError("it has more cells or fewer than the names", words)
     if not (0 < len(name := cells["name"]) <= 300 and name.isprintable()):
         raise _bad("name", name, "be 1 to 300 letters, without ends of lines, tabs and the like")
     width, height = (_number(cells, name, units[name]) for name in NEEDED[1:])

@@ -118,8 +118,8 @@ class Yours:
     Attributes
     ----------
     friction
-        Coefficient of friction between block and base in engines; by default the preset's. Models do
-        not slide: if the exact solution needs more friction, its row says so.
+        Coefficient of friction between block and base in engines; by default the preset's. Models
+        do not slide: if the exact solution needs more friction, its row says so.
     dt
         Step [s] of solvers, and of engines whose preset takes equal steps.
     """
