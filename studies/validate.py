@@ -154,7 +154,7 @@ def shown(tables: Tables) -> Tables:
         return {"Estimates, errors, and the factors between them": tables["factors"]}
     errors, s = tables["errors"], sensitivity_of(tables["errors"])
     return {
-        "Errors of the peak where both survive": quantiles(errors),
+        "Errors of the peak where both survive, differences over θcr": quantiles(errors),
         f"The same where S < {WELL_CONDITIONED:g}: by how many per cent a peak moves\nfor one of "
         "the pulse, or of the velocity ratio of impacts": quantiles(errors[s < WELL_CONDITIONED]),
     }
@@ -162,12 +162,13 @@ def shown(tables: Tables) -> Tables:
 
 def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each source: outcomes right and wrong, and quantiles of the error."""
-    levels = {"median_error": 0.5, "p90_error": 0.9, "p99_error": 0.99, "max_error": 1.0}
-    lines = []
+    levels, lines = {"median": 0.5, "p90": 0.9, "p99": 0.99, "max": 1.0}, []
     for source, rows in errors.groupby("source", sort=False):
         line = {"source": source, "cases": len(rows), "agree": rows["agrees"].sum()}
-        ends = {name: rows["error"].abs().quantile(level) for name, level in levels.items()}
-        lines.append({**line, **counted(wrong_in(rows)), **ends})
+        size = rows["error"].abs()
+        for name, sizes in {"error": size, "difference": size * rows["exact_peak"]}.items():
+            line |= {f"{word}_{name}": sizes.quantile(level) for word, level in levels.items()}
+        lines.append({**line, **counted(wrong_in(rows))})
     return pd.DataFrame(lines)
 
 
