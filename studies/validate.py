@@ -164,11 +164,11 @@ def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
     """Return a line for each source: outcomes right and wrong, and quantiles of the error."""
     levels, lines = {"median": 0.5, "p90": 0.9, "p99": 0.99, "max": 1.0}, []
     for source, rows in errors.groupby("source", sort=False):
-        line = {"source": source, "cases": len(rows), "agree": rows["agrees"].sum()}
-        size = rows["error"].abs()
-        for name, sizes in {"error": size, "difference": size * rows["exact_peak"]}.items():
+        size, kinds = rows["error"].abs(), counted(wrong_in(rows))
+        line = {"source": source, "cases": len(rows), "agree": rows["agrees"].sum(), **kinds}
+        for name, sizes in (("error", size), ("difference", size * rows["exact_peak"])):
             line |= {f"{word}_{name}": sizes.quantile(level) for word, level in levels.items()}
-        lines.append({**line, **counted(wrong_in(rows))})
+        lines.append(line)
     return pd.DataFrame(lines)
 
 

@@ -23,9 +23,8 @@ def draw_conditioning(errors: pd.DataFrame) -> Figure:
     bands = {ends: cases for ends, cases in bands.items() if len(cases)} or {BANDS[:2]: sizes}
     each = (9.4 / len(bands), 0.9 + 0.32 * len(sources))
     drawing, grid = panels(len(bands), len(bands), each, 1.1, sharex=True, sharey=True)
-    low = sizes["size"].clip(lower=LOWEST).min() if len(sizes) else 1e-8
-    high = max(sizes["size"].max(), 1.0) if len(sizes) else 1.0
-    grid[0].set(xscale="log", xlim=(0.5 * low, 2.0 * high))
+    low, high = sizes["size"].clip(lower=LOWEST).agg(["min", "max"]).fillna(1.0)
+    grid[0].set(xscale="log", xlim=(0.5 * low, 2.0 * max(high, 1.0)))
     error_scale(grid[0].xaxis, *grid[0].get_xlim())
     for axes, ((start, end), cases) in zip(grid, bands.items(), strict=True):
         rows(axes, [full_name(source) for source in sources], 10.0)
