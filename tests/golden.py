@@ -1,6 +1,6 @@
 """Rows to reproduce to the bit: `golden.py` prints what differs, `golden.py write` makes them.
 
-`golden.py NAME ...` compares those of some engines, or of the "models" and solvers, alone.
+`golden.py NAME ...` compares those of some sources or engines, or of all "models", alone.
 """
 
 import hashlib
@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import Delayed, Record, RigidBlock, RockingFrame, SinePulse, SlidingBlock, Still
-from engines import installed_engines
+from engines import ENGINES, installed_engines
 from studies import respond
 
 TABLE = __file__.removesuffix("py") + "csv"
@@ -51,12 +51,11 @@ def cases():
 
 
 def sources(*names):
-    """Return the sources of some engines, or of the "models"; of all that are here by default."""
-    return [
-        source
-        for name in names or ("models", *HERE)
-        for source in (OTHERS if name == "models" else [f"{name}:{use}" for use in PRESETS])
-    ]
+    """Return the sources of some names, which may be those of engines or "models"; else all."""
+    uses = [(name, use.name) for name in HERE for use in ENGINES[name].presets]
+    known = {source: {source, "models"} for source in OTHERS}
+    known |= {f"{name}:{use}": {name, f"{name}:{use}"} for name, use in uses if use in PRESETS}
+    return [source for source, called in known.items() if not names or called & {*names}]
 
 
 def rows(*names):
@@ -67,7 +66,7 @@ def rows(*names):
                 continue  # they depend on where in memory its bodies are
             try:
                 it = respond(source, system, motion, **options)
-            except ValueError:  # there is no such preset, or the source does not take the case
+            except ValueError:  # the source does not take the case
                 continue
             seen = (it.impacts, it.uplifts, it.rests, it.slips, it.slip_m, it.sink_m, it.hop_m)
             numbers = repr([np.asarray(one, dtype=float).tolist() for one in seen])
@@ -79,8 +78,7 @@ def compared(*names):
     """Return each kept row of what is installed beside the same row of today."""
     kept = pd.read_csv(TABLE, dtype=str, keep_default_na=False).set_index(COLUMNS[:2])
     today = pd.DataFrame(rows(*names), columns=COLUMNS).astype(str).set_index(COLUMNS[:2])
-    asked = {source.partition(":")[0] for source in sources(*names)}
-    kept = kept[[source.partition(":")[0] in asked for source, _ in kept.index]]
+    kept = kept.loc[sources(*names)]
     return pd.concat({"kept": kept, "today": today}, axis=1).fillna("no row")
 
 
