@@ -4,7 +4,7 @@ A file that leaves a doubt is refused: nothing is filled in, thinned or guessed.
 """
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Literal, NamedTuple
 
@@ -16,15 +16,7 @@ from analytic.motion import FloatArray
 from analytic.text import MOST_SAMPLES, NUMBER, finite_number, is_number, lines_of, shown, too_long
 
 Units = Literal["g", "mg", "m/s2", "cm/s2", "mm/s2", "gal"]
-
-UNITS: Mapping[str, float] = {
-    "g": GRAVITY,
-    "mg": 1e-3 * GRAVITY,
-    "m/s2": 1.0,
-    "cm/s2": 0.01,
-    "mm/s2": 1e-3,
-    "gal": 0.01,
-}
+UNITS = {"g": GRAVITY, "mg": 1e-3 * GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 1e-3, "gal": 0.01}
 """Unit of acceleration -> m/s2; g is that of the blocks, so that what lifts one is g tan alpha."""
 
 UNEVEN = 0.03
@@ -53,8 +45,8 @@ QUANTITIES = {
 }
 """Quantity -> how a header names it."""
 
-ASC = {"DATA_TYPE": "", "NDATA": "", "SAMPLING_INTERVAL_S": "", "UNITS": "units: "}
-"""Keys of an ASC file that a record depends on -> what makes their value a unit that is stated."""
+ASC = ("DATA_TYPE", "NDATA", "SAMPLING_INTERVAL_S", "UNITS")
+"""Keys of an ASC file that a record depends on; only the last may be missing."""
 
 AT2 = [
     re.compile(form, re.IGNORECASE | re.ASCII)
@@ -75,12 +67,10 @@ TIME = re.compile(r"\b(?:t|time)(?![a-z])", re.IGNORECASE)
 ACCELERATION = re.compile(r"\bag?(?![a-z])|acc", re.IGNORECASE)
 FIELD = re.compile(r"[^\s(\[]+(?:\s*[(\[][^)\]]*[)\]])?")
 """A name without blanks, but for one before the bracket of its unit."""
-
 TIME_UNIT = re.compile(r"(?:[(\[_/]|\bin\b)\s*([^\W_]+)")
 SHORTER = re.compile(r"(?<![\w/])(?:ms|msecs?|milliseconds?|[µμ]s)\b", re.IGNORECASE)
 
-
-Header = Sequence[tuple[int, str]]
+Lines = Sequence[tuple[int, str]]
 """Lines of a file, each behind its number."""
 
 
@@ -100,14 +90,14 @@ def read(path: Path, units: str | None, dt: float | None, insist: bool = True) -
         raise ValueError("it must be a file of acceleration, as AT2 files are")
     lines = lines_of(path)
     first = next((line.strip() for line in lines if line.strip()), "")
+    foreign = [name for name, begins in FOREIGN.items() if re.match(begins, first, re.IGNORECASE)]
     found = _asc(lines, units) or _at2(lines, units)
-    for name, begins in FOREIGN.items() if found is None else ():
-        if re.match(begins, first, re.IGNORECASE):
-            raise ValueError(
-                f"it is a {name} file, which is not read; it must be a PEER AT2 or an ESM ASC file,"
-                " or a table of two columns, time [s] and acceleration, made from it, for instance"
-                " with gmprocess"
-            )
+    if foreign and not found:
+        raise ValueError(
+            f"it is a {foreign[0]} file, which is not read; it must be a PEER AT2 or an ESM ASC "
+            "file, or a table of two columns, time [s] and acceleration, made from it, for "
+            "instance with gmprocess"
+        )
     header, rows = _split(lines)
     found = found or _column(header, rows, units, dt) or _table(header, rows, units)
     if insist and dt is not None and found.dt != dt:
@@ -128,20 +118,17 @@ def _asc(lines: Sequence[str], units: str | None) -> Sampled | None:
         if key in ASC and value.strip():
             if key in said:
                 raise ValueError(f"line {at}: {key} must not be said twice")
-            said[key] = at, ASC[key] + value.strip()
-    for key in ("DATA_TYPE", "NDATA", "SAMPLING_INTERVAL_S"):
+            said[key] = at, value.strip()
+    for key in ASC[:3]:
         if key not in said:
             raise ValueError(f"it does not say {key}, and must")
     at, kind = said["DATA_TYPE"]
     if not kind.upper().endswith("ACCELERATION") or "SPECTRUM" in kind.upper():
         raise ValueError(f"line {at}: DATA_TYPE is {shown(kind)}; it must be ACCELERATION")
-    count = _whole("NDATA", *said["NDATA"])
-    at, step = said["SAMPLING_INTERVAL_S"]
-    dt = _number(step, at)
+    count, dt = _whole("NDATA", *said["NDATA"]), _number(*said["SAMPLING_INTERVAL_S"])
     rows = enumerate(map(str.strip, lines[end:]), start=end + 1)
-    samples = [_number(row, at) for at, row in rows if row]
-    unit = [said[key] for key in said if key == "UNITS"]
-    return Sampled(dt, *_converted(samples, unit, units, count))
+    unit = [(at, f"units: {value}") for key, (at, value) in said.items() if key == "UNITS"]
+    return _sampled(dt, [_number(at, row) for at, row in rows if row], unit, units, count)
 
 
 def _at2(lines: Sequence[str], units: str | None) -> Sampled | None:
@@ -149,16 +136,14 @@ def _at2(lines: Sequence[str], units: str | None) -> Sampled | None:
 
     A header that says the step alone must be closed by "*** End Data ***": the file is whole then.
     """
-    end, counts, steps = 0, dict[int, None](), dict[float, None]()
+    end, counts, steps = 0, dict[float, None](), dict[float, None]()
     for at, line in enumerate(lines[:100], start=1):
-        if line.lstrip()[:1] in ("#", "%"):
-            continue
-        found = [said.groupdict() for form in AT2 for said in form.finditer(line)]
-        for said in found:
+        found = [] if _is_remark(line) else [one for form in AT2 for one in form.finditer(line)]
+        for said in (match.groupdict() for match in found):
             if unit := NOT_SECONDS.fullmatch(said.get("unit", "")):
                 raise ValueError(f"line {at}: the step is in {unit[0]}; it must be in seconds")
             counts |= {_whole("NPTS", at, said["count"]): None} if "count" in said else {}
-            steps |= {_number(said["dt"], at): None} if "dt" in said else {}
+            steps |= {_number(at, said["dt"]): None} if "dt" in said else {}
         end = at if found or BEGIN.match(line) else end
     last = next((at for at in reversed(range(len(lines))) if lines[at].strip()), 0)
     closed = bool(END.match(lines[last]))
@@ -166,50 +151,54 @@ def _at2(lines: Sequence[str], units: str | None) -> Sampled | None:
         return None
     if not steps:
         raise ValueError("it says NPTS; it must say DT, too")
-    for name, values in (("step", [*steps]), ("number of samples", [*counts])):
+    for name, values in (("step", steps), ("number of samples", counts)):
         if len(values) > 1:
             words = " and ".join(f"{value:g}" for value in values)
             raise ValueError(f"its header says {words} as {name}; it must say one")
     header = list(enumerate(lines[:end], start=1))
     _check_quantity(header)
     rows = enumerate(lines[end : last if closed else last + 1], start=end + 1)
-    samples = [_number(word, at) for at, row in rows for word in row.split()]
-    return Sampled(min(steps), *_converted(samples, header, units, *counts))
+    samples = [_number(at, word) for at, row in rows for word in row.split()]
+    return _sampled(min(steps), samples, header, units, *counts)
 
 
-def _column(header: Header, rows: Header, units: str | None, dt: float | None) -> Sampled | None:
+def _column(header: Lines, rows: Lines, units: str | None, dt: float | None) -> Sampled | None:
     """Read samples alone; their step is given, or stands with their number on a line "npts dt"."""
     words = [(at, word) for at, row in rows for word in row.split()]
     widths, count = [len(row.split()) for _, row in rows], None
     if widths[:1] == [2] and {*widths[1:]} == {1} and words[0][1].isdecimal():
-        (at, npts), (_, step), *words = words
-        count, dt = _whole("the number of samples", at, npts), _number(step, at)
+        count, dt = _whole("the number of samples", *words[0]), _number(*words[1])
+        words = words[2:]
     elif not rows or {*widths} == {2} or any(mark in rows[0][1] for mark in ",;"):
         return None
     elif dt is None and {*widths} == {1}:
         raise ValueError('it has one column; dt, or a line "npts dt" above, must say a step')
-    elif dt is None or _timed(rows):
+    elif dt is None or (len({*widths}) == 1 and widths[0] > 2 and len(rows) > 2 and _timed(rows)):
         return None
     _check_quantity(header)
-    samples = [_number(word, at) for at, word in words]
-    return Sampled(dt, *_converted(samples, header, units, count))
+    return _sampled(dt, [_number(*word) for word in words], header, units, count)
 
 
-def _timed(rows: Header) -> bool:
-    """Return whether three or more columns begin with one of times, which no samples do."""
-    words = [row.split() for _, row in rows]
-    if len({*map(len, words)}) > 1 or len(words[0]) < 3 or len(words) < 3:
-        return False
-    times = [float(row[0]) if is_number(row[0]) else 0.0 for row in words]
-    return not _uneven(np.array(times), range(len(times)))
+def _timed(rows: Lines) -> bool:
+    """Return whether the first column is of times, which no samples are."""
+    first = [row.split()[0] for _, row in rows]
+    times = np.array([float(word) if is_number(word) else 0.0 for word in first])
+    return not _uneven(times, range(len(times)))
 
 
-def _table(header: Header, rows: Header, units: str | None) -> Sampled:
+def _table(header: Lines, rows: Lines, units: str | None) -> Sampled:
     """Read a table of two columns, separated by commas, semicolons or blanks."""
     separator = next((mark for mark in ";," for _, row in rows[:1] if mark in row), None)
     if len(rows) < 2:
         raise ValueError(f"it has {len(rows)} rows of numbers; it must have two or more")
-    times, samples = np.transpose([_pair(row, separator, at) for at, row in rows])
+    pairs = list[list[float]]()
+    for at, row in rows:
+        words = row.strip().rstrip(",;").split(separator)
+        if len(words) != 2:
+            problem = f"line {at} has {len(words)} columns; it must have two"
+            raise ValueError(f"{problem}, time and acceleration")
+        pairs.append([_number(at, word.strip()) for word in words])
+    times, samples = np.transpose(pairs)
     numbers = [at for at, _ in rows]
     if not _named(header, separator):
         _check_quantity(header)
@@ -225,20 +214,10 @@ def _table(header: Header, rows: Header, units: str | None) -> Sampled:
             )
     if problem := _uneven(times, numbers):
         raise ValueError(problem)
-    dt = float(times[-1] - times[0]) / (len(times) - 1)
-    return Sampled(dt, *_converted(samples, header, units))
+    return _sampled(float(times[-1] - times[0]) / (len(times) - 1), samples, header, units)
 
 
-def _pair(row: str, separator: str | None, at: int) -> tuple[float, float]:
-    words = row.strip().rstrip(",;").split(separator)
-    if len(words) != 2:
-        raise ValueError(
-            f"line {at} has {len(words)} columns; it must have two, time and acceleration"
-        )
-    return _number(words[0].strip(), at), _number(words[1].strip(), at)
-
-
-def _named(header: Header, separator: str | None) -> bool:
+def _named(header: Lines, separator: str | None) -> bool:
     """Return whether a line names the columns; ValueError if not as time [s] and acceleration."""
     named = False
     for at, line in header:
@@ -272,33 +251,32 @@ def _uneven(times: FloatArray, lines: Sequence[int]) -> str:
             return f"{where}: the time {time:g} s must be later than {before:g} s"
         return f"{where}: a gap from {before:g} to {time:g} s; steps must all be {usual:g} s"
     for at in np.flatnonzero(missed).tolist()[:1]:
-        return (
-            f"line {lines[at]}: the time {times[at]:g} s is not a whole number of steps "
-            f"of {dt:g} s after the first; steps must be equal"
-        )
+        where = f"line {lines[at]}: the time {times[at]:g} s is not a whole number of steps"
+        return f"{where} of {dt:g} s after the first; steps must be equal"
     return ""
 
 
-def _split(lines: Sequence[str]) -> tuple[Header, Header]:
+def _is_remark(line: str) -> bool:
+    return line.lstrip().startswith(("#", "%"))
+
+
+def _split(lines: Sequence[str]) -> tuple[Lines, Lines]:
     """Return the lines above the first row of numbers with all remarks, and the rows."""
-    first = (re.split(r"[\s,;]", line.strip(), maxsplit=1)[0] for line in lines)
-    begin = next((at for at, word in enumerate(first, start=1) if is_number(word)), len(lines) + 1)
-    header, rows = list[tuple[int, str]](), list[tuple[int, str]]()
-    for at, line in enumerate(lines, start=1):
-        if at < begin or line.lstrip()[:1] in ("#", "%"):
-            header.append((at, line))
-        elif line.strip():
-            rows.append((at, line))
-    return header, rows
+    numbered = list(enumerate(lines, start=1))
+    first = (at for at, line in numbered if is_number(re.split(r"[\s,;]", line.strip())[0]))
+    begin = next(first, len(lines) + 1)
+    header = [(at, line) for at, line in numbered if at < begin or _is_remark(line)]
+    below = numbered[begin - 1 :]
+    return header, [(at, line) for at, line in below if line.strip() and not _is_remark(line)]
 
 
-def _converted(
-    samples: ArrayLike, header: Header, given: str | None, count: int | None = None
-) -> tuple[str, FloatArray]:
-    """Return the unit that a header states, or else a user gives, and the samples in m/s2.
+def _sampled(
+    dt: float, samples: ArrayLike, header: Lines, given: str | None, count: float | None = None
+) -> Sampled:
+    """Return the samples in m/s2, of the unit that a header states, or else a user gives.
 
     What overflows is infinite. ValueError if the unit is stated nowhere or twice or is not of
-    acceleration, or there are more samples than a record may have, or not as many as a header says.
+    acceleration, or there are too many samples, or not as many as a header says.
     """
     stated = {unit: at for at, line in header for unit in _units_in(line)}
     for unit, at in stated.items():
@@ -316,7 +294,7 @@ def _converted(
     if count not in (None, found.size):
         raise ValueError(f"it holds {found.size} samples; it must hold the {count} of its header")
     with np.errstate(over="ignore"):
-        return unit, np.asarray(UNITS[unit] * found)
+        return Sampled(dt, unit, np.asarray(UNITS[unit] * found))
 
 
 def _units_in(line: str) -> Iterable[str]:
@@ -327,17 +305,15 @@ def _units_in(line: str) -> Iterable[str]:
     return (one or other for one, other in STATED.findall(plain))
 
 
-def _check_quantity(header: Header) -> None:
-    """Raise ValueError if a header speaks of velocity or displacement, unless of acceleration, too.
+def _check_quantity(header: Lines) -> None:
+    """Raise ValueError if a header speaks of velocity or displacement.
 
-    One that speaks of both must state a unit of acceleration.
+    One that speaks of acceleration, too, must state a unit of it.
     """
-    spoken = {
-        quantity: at
-        for at, line in header
-        for quantity, name in QUANTITIES.items()
-        if name.search(line)
-    }
+    found = [
+        (at, kind) for at, line in header for kind in QUANTITIES if QUANTITIES[kind].search(line)
+    ]
+    spoken = {kind: at for at, kind in found}
     stated = {unit for _, line in header for unit in _units_in(line)}
     if "acceleration" in spoken and stated & UNITS.keys():
         return
@@ -345,17 +321,17 @@ def _check_quantity(header: Header) -> None:
         raise ValueError(f"line {spoken[quantity]} speaks of {quantity}; it must be acceleration")
 
 
-def _number(word: str, line: int) -> float:
+def _number(line: int, word: str) -> float:
     """Return the number that a word of a line is; ValueError names the line."""
     try:
         return finite_number(word)
     except ValueError as error:
-        if TOUCHING.fullmatch(word) and not is_number(word):
-            raise ValueError(
-                f"line {line}: the numbers of {shown(word)} must stand apart"
-            ) from error
-        said = shown(word)[1:-1] if is_number(word) else shown(word)
-        raise ValueError(f"line {line}: {said} must be {error}") from error
+        said, problem = shown(word), f"must be {error}"
+        if is_number(word):
+            said = said[1:-1]
+        elif TOUCHING.fullmatch(word):
+            said, problem = f"the numbers of {said}", "must stand apart"
+        raise ValueError(f"line {line}: {said} {problem}") from error
 
 
 def _whole(name: str, line: int, word: str) -> int:

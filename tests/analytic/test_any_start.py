@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from closed_forms import free_amplitude, quarter_period
 from given import BLOCK, pulse
 from independent import peak_and_impacts
 
 from analytic import MODELS, Impact, Outcome, RigidBlock, Still, conditioning, simulate
-from analytic.criteria import free_amplitude, quarter_period
 from studies import respond
 
 SOURCES = ("exact", "rk4", "average-acceleration", "rk45", "dop853", "radau", "lsoda")

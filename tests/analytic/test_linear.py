@@ -1,4 +1,4 @@
-"""The linear models' closed form, the criteria, and how the models relate."""
+"""The linear models' closed form, and how the models relate."""
 
 import math
 
@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from analytic import MODELS, RigidBlock, peak_ratios
-from analytic.criteria import overturning_amplitude, quarter_period
+from analytic import MODELS, peak_ratios
 from analytic.kernels.closed_form import linear_state
 from analytic.kernels.law import State
 
@@ -56,29 +55,6 @@ def test_short_steps_out_of_a_rest_lose_no_digits(h):
     for n in range(28):
         c.append((c[n] + f[n]) / ((n + 1) * (n + 2)))
     assert y == pytest.approx(math.fsum(cn * h**n for n, cn in enumerate(c)), rel=1e-13)
-
-
-@pytest.mark.parametrize(
-    ("omega_over_p", "expected"), [(1, 1.322397), (2, 1.800724), (4, 2.790798)]
-)
-def test_half_sine_criterion(omega_over_p, expected):
-    assert overturning_amplitude(omega_over_p) == pytest.approx(expected, abs=5e-7)
-    assert overturning_amplitude(omega_over_p) < math.hypot(1, omega_over_p)
-
-
-@pytest.mark.parametrize(
-    ("fraction", "expected"),
-    [
-        (0.5, {"exact": 0.36531268, "housner": 0.36301056, "modified": 0.35991994}),
-        (0.9, {"exact": 0.82640501, "housner": 0.82506169, "modified": 0.72439220}),
-    ],
-)
-def test_quarter_periods(fraction, expected):
-    block = RigidBlock(width=0.5, height=1.0)
-    for model, period in expected.items():
-        assert quarter_period(block, fraction * block.alpha, model) == pytest.approx(
-            period, abs=5e-9
-        )
 
 
 def test_slender_blocks_make_all_models_one():

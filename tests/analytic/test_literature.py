@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 import pytest
+from closed_forms import frictionless_fall
 
 from analytic import RigidBlock, SinePulse, overturning_modes, simulate
 from analytic.block import GRAVITY
-from analytic.criteria import frictionless_fall
 
 HOGAN = "Hogan, 10th World Conference on Earthquake Engineering, 1992, Table 1 and the cascade"
 ZHANG = "Zhang and Makris, Rocking response of free-standing blocks under cycloidal pulses, 2001"

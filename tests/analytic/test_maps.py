@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from closed_forms import overturning_amplitude, overturning_velocity
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -16,7 +17,6 @@ from analytic import (
     peak_ratios,
     simulate,
 )
-from analytic.criteria import overturning_amplitude, overturning_velocity
 from analytic.maps import FAILED, NOT_LIFTED, SURVIVES
 
 LINEAR = [name for name, model in MODELS.items() if model.linear]

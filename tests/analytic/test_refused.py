@@ -20,7 +20,6 @@ from analytic import (
     peak_ratios,
     simulate,
 )
-from analytic.criteria import frictionless_fall, overturning_amplitude
 from engines import Scene
 
 INF, NAN = math.inf, math.nan
@@ -44,8 +43,6 @@ USUAL = {
     integrate: SHAKEN,
     peak_ratios: ARRAYS,
     overturning_modes: ARRAYS,
-    overturning_amplitude: {"omega_over_p": 1.0},
-    frictionless_fall: {"block": BLOCK, "theta": 0.5},
 }
 """What can be asked, and with what it is answered."""
 
@@ -93,8 +90,6 @@ WRONG = {
         "half_cycles": (0.5,),
         "threads": (0, -1),
     },
-    overturning_amplitude: {"half_cycles": (3,), "omega_over_p": (NAN,)},
-    frictionless_fall: {"theta": (BLOCK.alpha,)},
 }
 """Values, of one argument at a time, that are refused by its name and their own."""
 

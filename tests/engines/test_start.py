@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from closed_forms import free_amplitude, frictionless_fall, quarter_period
 from declared import rounding
 from known import standing
 from uses import (
@@ -26,7 +27,6 @@ from uses import (
 )
 
 from analytic import RigidBlock
-from analytic.criteria import free_amplitude, frictionless_fall, quarter_period
 from analytic.motion import SinePulse, Still
 from analytic.response import Outcome
 from engines.run.run import build

@@ -90,7 +90,6 @@ ANSWERS = {
     "analytic.simulate": "from analytic import simulate",
     "analytic": "import analytic",
     "analytic.maps": "import analytic.maps as here, json",
-    "analytic.criteria": "from analytic.criteria import quarter_period",
     "analytic.conditioning": "from analytic import conditioning",
     "analytic.kernels.excursions": "from analytic.kernels.excursions import march",
     "analytic.kernels.forces": "from analytic.kernels import forces",

@@ -6,12 +6,12 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+from closed_forms import overturning_velocity
 from commanding import refused
 from given import noise
 from records import write_record
 
 from analytic import Outcome, Record, RigidBlock, SlidingBlock, simulate
-from analytic.criteria import overturning_velocity
 from studies import blocks
 from studies.__main__ import run
 from studies.blocks import WIDTH, strength

@@ -1,0 +1,85 @@
+"""Closed forms of free rocking, and of the ground motions that overturn a block.
+
+They use nothing of the solvers, and so are checks on them.
+"""
+
+import math
+
+import numpy as np
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.special import ellipk, ellipkinc
+
+from analytic import MODELS
+
+
+def quarter_period(block, theta, model="exact"):
+    """Return the time [s] that a block released at rest takes to its impact.
+
+    Housner (1963) gives that of linear models; Yim, Chopra and Penzien (1980) the exact one in
+    another form.
+    """
+    law = MODELS[model].law(block.alpha, block.restitution)
+    if law.linear:
+        return math.acosh(law.saddle / (law.saddle - theta)) / (law.k * block.p)
+    modulus = math.cos(0.5 * (block.alpha - theta))
+    angle = math.asin(math.cos(0.5 * block.alpha) / modulus)
+    return float(ellipk(modulus**2) - ellipkinc(angle, modulus**2)) / block.p
+
+
+def free_amplitude(block, theta, impacts):
+    """Return the rotation [rad] that a released block reaches after a number of impacts.
+
+    cos(alpha - theta_n) = cos alpha + eta^2n [cos(alpha - theta) - cos alpha], in a form that keeps
+    the digits of small rotations.
+    """
+    lift = 2.0 * math.sin(block.alpha - 0.5 * theta) * math.sin(0.5 * theta)
+    left = block.restitution ** (2 * impacts) * lift
+    barrier = 2.0 * math.sin(0.5 * block.alpha) ** 2
+    return block.alpha - 2.0 * math.asin(math.sqrt(0.5 * (barrier - left)))
+
+
+def frictionless_fall(block, theta):
+    """Return the time [s] and the rate [rad/s] at which a frictionless block strikes its base.
+
+    Released on one corner, which slides, its centre falls straight down: z = R cos(alpha - theta),
+    theta'^2 (B^2 + H^2)/12 + z'^2 = 2 g (z0 - z), and the time is a quadrature over the root of
+    the rotation gone, which is regular at the release.
+    """
+    gyration = (block.width**2 + block.height**2) / 12.0
+
+    def slowness(root):
+        turned = root * root
+        mean = math.sin(block.alpha - theta + 0.5 * turned)
+        fallen = 2.0 * block.R * mean * 0.5 * np.sinc(0.5 * turned / math.pi)
+        lever = block.R * math.sin(block.alpha - theta + turned)
+        return 2.0 * math.sqrt((gyration + lever * lever) / (2.0 * block.gravity * fallen))
+
+    end = math.sqrt(theta)
+    time, _ = quad(slowness, 0.0, end, epsabs=0.0, epsrel=1e-13)
+    return time, 2.0 * end / slowness(end)
+
+
+def overturning_amplitude(omega_over_p, half_cycles):
+    """Return the least amplitude, over the onset, that overturns a linear block without an impact.
+
+    Half-sine: (omega/p) sin psi - cos psi = exp(-(p/omega)(pi - psi)); full-sine: cos psi -
+    (omega/p) sin psi = exp(-(p/omega)(2 pi - psi)); sin psi = onset/amplitude.
+    """
+
+    def excess(log_amplitude):
+        psi = math.asin(math.exp(-log_amplitude))
+        wave = omega_over_p * math.sin(psi) - math.cos(psi)
+        late = math.exp(-(half_cycles * math.pi - psi) / omega_over_p)
+        return (wave if half_cycles == 1 else -wave) - late
+
+    return math.exp(brentq(excess, 1e-12, math.log(1e9), xtol=1e-15, rtol=1e-15))
+
+
+def overturning_velocity(block):
+    """Return the sudden ground velocity [m/s] that just overturns a block at rest (exact).
+
+    4 R p sqrt(2 (1 - cos alpha)) / (3 cos alpha), from the angular momentum about the pivot.
+    """
+    barrier = math.sqrt(2.0 * (1.0 - math.cos(block.alpha)))
+    return 4.0 * block.R * block.p * barrier / (3.0 * math.cos(block.alpha))
