@@ -49,13 +49,16 @@ def solve_cases(
         where = slice(start, min(start + PART, size))
         cases = np.array([column.flat[where] for column in columns], dtype=np.float64)
         if restitution is None:
-            cases[4] = housner_restitutions(cases[0])
+            # where all are of one slenderness, of one block
+            cases[4] = housner_restitutions(cases[0] if np.ptp(cases[0]) else cases[0, :1])
         check_cases(cases)
         constants = np.stack(declared.constants(cases[0]))
         omega, half_cycles = cases[2], cases[3]
         steps = np.max(half_cycles * (1.0 + math.pi / omega), initial=0.0)
         solve = PULSES.few(size, steps)
-        exactly, pulse = accuracy(TOLERANCE), np.zeros((2, 7))
+        known = declared.linear and above > 0.0
+        exactly = Accuracy(0, TOLERANCE) if known else accuracy(TOLERANCE)
+        pulse = np.zeros((2, 7))
         ends = solve(declared.linear, exactly, constants, cases, above, pulse, workspace())
         take(cases, constants, ends, *(array[where] for array in written))
 

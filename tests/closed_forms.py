@@ -14,25 +14,18 @@ from analytic import MODELS
 
 
 def quarter_period(block, theta, model="exact"):
-    """Return the time [s] that a block released at rest takes to its impact.
-
-    Housner (1963) gives that of linear models; Yim, Chopra and Penzien (1980) the exact one in
-    another form.
-    """
+    """Return the time [s] that a block released at rest takes to its impact."""
     law = MODELS[model].law(block.alpha, block.restitution)
     if law.linear:
         return math.acosh(law.saddle / (law.saddle - theta)) / (law.k * block.p)
+    # Yim, Chopra and Penzien (1980) give it in another form
     modulus = math.cos(0.5 * (block.alpha - theta))
     angle = math.asin(math.cos(0.5 * block.alpha) / modulus)
     return float(ellipk(modulus**2) - ellipkinc(angle, modulus**2)) / block.p
 
 
 def free_amplitude(block, theta, impacts):
-    """Return the rotation [rad] that a released block reaches after a number of impacts.
-
-    cos(alpha - theta_n) = cos alpha + eta^2n [cos(alpha - theta) - cos alpha], in a form that keeps
-    the digits of small rotations.
-    """
+    """Return the rotation [rad] that a released block reaches after a number of impacts."""
     lift = 2.0 * math.sin(block.alpha - 0.5 * theta) * math.sin(0.5 * theta)
     left = block.restitution ** (2 * impacts) * lift
     barrier = 2.0 * math.sin(0.5 * block.alpha) ** 2
@@ -63,8 +56,7 @@ def frictionless_fall(block, theta):
 def overturning_amplitude(omega_over_p, half_cycles):
     """Return the least amplitude, over the onset, that overturns a linear block without an impact.
 
-    Half-sine: (omega/p) sin psi - cos psi = exp(-(p/omega)(pi - psi)); full-sine: cos psi -
-    (omega/p) sin psi = exp(-(p/omega)(2 pi - psi)); sin psi = onset/amplitude.
+    Half-sine: (omega/p) sin psi - cos psi = exp(-(p/omega)(pi - psi)), sin psi = onset/amplitude.
     """
 
     def excess(log_amplitude):
@@ -77,9 +69,6 @@ def overturning_amplitude(omega_over_p, half_cycles):
 
 
 def overturning_velocity(block):
-    """Return the sudden ground velocity [m/s] that just overturns a block at rest (exact).
-
-    4 R p sqrt(2 (1 - cos alpha)) / (3 cos alpha), from the angular momentum about the pivot.
-    """
+    """Return the sudden ground velocity [m/s] that just overturns a block at rest."""
     barrier = math.sqrt(2.0 * (1.0 - math.cos(block.alpha)))
     return 4.0 * block.R * block.p * barrier / (3.0 * math.cos(block.alpha))

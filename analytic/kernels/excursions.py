@@ -55,6 +55,9 @@ VANISHING = 1e-15
 FAR = 1e3
 """A step out of an impact goes no further than this many times the excursion to be expected:
 a root much closer to the step's begin than its end could be overlooked."""
+NEAR = 1e-7
+"""Part of the time gone at which an impact ahead is left to Newton's method."""
+MOST_LEAPS = 10_000
 LINEAR_STEP = 2.5
 """Linear step in units of the shortest time scale; its series is exact to 1e-16."""
 
@@ -137,6 +140,50 @@ def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
         if abs(move) <= 2e-16 * x:
             break
     return x
+
+
+def safe_time(gap: float, away: float, most: float) -> float:
+    """Return when a gap that opens at a rate closes, pulled by no more than `most` > 0."""
+    root = math.sqrt(away * away + 2.0 * most * gap)
+    return (away + root) / most if away >= 0.0 else 2.0 * gap / (root - away)
+
+
+def leap(law: Law, segment: FloatArray, begin: State, peak: float) -> Step:
+    """Step as `take_step`, of a linear model under a sine, by the closed form; no peak is sought.
+
+    Bounds of y'' in each half cycle say how far ahead there is no impact and no fall; where the
+    ground lifts a block that moves up, there is none until it ceases to. Near either these steps
+    converge to it quadratically.
+    """
+    start, end, amplitude, omega, phase, _, _ = segment
+    left, square, push = end - begin.tau, law.k * law.k, law.factor * abs(amplitude)
+    level = math.asin(min(law.saddle / push, 1.0))
+    angle = omega * (begin.tau - start) + phase
+    turns = math.floor(angle / math.pi)
+    t, y, v = 0.0, begin.y, begin.v
+    for _ in range(MOST_LEAPS):
+        # turn is where the half cycle ends, in which the ground pushes inward or outward
+        out = begin.side * amplitude * (1.0 - 2.0 * (turns % 2)) < 0.0
+        turn = (turns + 1) * math.pi - angle
+        inward, outward = (0.0, push) if out else (push, 0.0)
+        clear = (turn - level) / omega - t
+        if not (out and v >= 0.0 and clear >= 0.0 and omega * t >= turn + level - math.pi - NEAR):
+            clear = safe_time(max(y, 0.0), v, square * (law.saddle + inward))
+        most = max(square * (LYING - law.saddle + outward), VANISHING)
+        stop = min(turn / omega, left)
+        h = max(min(clear, safe_time(LYING - y, -v, most)), VANISHING * stop)
+        turns += t + h >= stop
+        t = min(t + h, stop)
+        y, v = linear_state(law, segment, begin, t)
+        if y >= LYING * (1.0 - VANISHING):
+            return Step(FALLEN, t, 1.0, begin.tau + t, y, v, peak)
+        if y <= 0.0 or (y < -NEAR * t * v and 2.0 * square * (LYING + push) * y < v * v):
+            t = polish(law, segment, begin, t)
+            _, v = linear_state(law, segment, begin, t)
+            return Step(HIT, t, 1.0, begin.tau + t, 0.0, v, peak)
+        if t >= left:
+            return Step(FREE, t, 1.0, end, y, v, peak)
+    return Step(LOST, t, 1.0, begin.tau, y, v, peak)
 
 
 def take_step(
@@ -222,8 +269,9 @@ def march(
     """Follow one response, to the end of the last segment, on which nothing moves.
 
     Outcome and peak of what comes after follow from energy. The accuracy is that of the exact
-    model; for a linear one the order is that of the series that brackets events. The peak is looked
-    for above a rotation [rad]: where nobody asks for it, time is saved. work is a `workspace`.
+    model; for a linear one the order is that of the series that brackets events, or 0 where nobody
+    asks for the peak, or for more, under a pulse. The peak is looked for above a rotation [rad].
+    work is a `workspace`.
     """
     last, limits = moving[-1][1], notes.limits
     side, y, v = start
@@ -249,7 +297,10 @@ def march(
             return outcome, max(peak, ahead), steps, impacts, events, last, y, v
         steps += 1
         segment, begin = moving[j], State(side, tau, lead, y, v)
-        step = take_step(law, accuracy, segment, begin, peak, work)
+        if accuracy.order == 0:
+            step = leap(law, segment, begin, peak)
+        else:
+            step = take_step(law, accuracy, segment, begin, peak, work)
         if step.kind == LOST:
             return BROKEN, peak, steps, impacts, events, tau, y, v
         n = sample_step(law, segment, begin, work[4], accuracy.order, step, notes, n)

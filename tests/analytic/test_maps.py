@@ -37,10 +37,14 @@ def test_outcomes_are_those_of_the_peaks(model, half_cycles):
     omega = np.exp(draw.uniform(math.log(0.05), math.log(20.0), count))
     restitution = np.where(draw.random(count) < 0.5, draw.uniform(0.0, 1.0, count), 0.8)
     found = overturning_modes(alpha, amplitude, omega, half_cycles, model, restitution)
-    _, outcomes = peak_ratios(alpha, amplitude, omega, half_cycles, model, restitution)
+    near = amplitude * (1.0 + 4e-16 * np.arange(-4, 5)[:, None])
+    outcomes = peak_ratios(alpha, near, omega, half_cycles, model, restitution)[1]
+    # of a hundred impacts each may double an error: then rounding decides
+    decided = (outcomes == outcomes[4]).all(axis=0)
+    assert decided.mean() > (0.95 if half_cycles == 200 else 0.999)
     expected = {SURVIVES: Outcome.ROCKED, NOT_LIFTED: Outcome.AT_REST, FAILED: Outcome.FAILED}
     named = [expected.get(int(mode), Outcome.OVERTURNED) for mode in found.mode]
-    assert [n for n, (a, b) in enumerate(zip(named, outcomes, strict=True)) if a is not b] == []
+    assert np.flatnonzero((np.array(named) != outcomes[4]) & decided).tolist() == []
     assert set(named) == {Outcome.ROCKED, Outcome.AT_REST, Outcome.OVERTURNED}
 
 
