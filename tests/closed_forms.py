@@ -1,12 +1,7 @@
-"""Closed forms of free rocking, and of the ground motions that overturn a block.
-
-They use nothing of the solvers, and so are checks on them.
-"""
+"""Closed forms of free rocking and of overturning; they use nothing of the solvers."""
 
 import math
 
-import numpy as np
-from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkinc
 
@@ -30,27 +25,6 @@ def free_amplitude(block, theta, impacts):
     left = block.restitution ** (2 * impacts) * lift
     barrier = 2.0 * math.sin(0.5 * block.alpha) ** 2
     return block.alpha - 2.0 * math.asin(math.sqrt(0.5 * (barrier - left)))
-
-
-def frictionless_fall(block, theta):
-    """Return the time [s] and the rate [rad/s] at which a frictionless block strikes its base.
-
-    Released on one corner, which slides, its centre falls straight down: z = R cos(alpha - theta),
-    theta'^2 (B^2 + H^2)/12 + z'^2 = 2 g (z0 - z), and the time is a quadrature over the root of
-    the rotation gone, which is regular at the release.
-    """
-    gyration = (block.width**2 + block.height**2) / 12.0
-
-    def slowness(root):
-        turned = root * root
-        mean = math.sin(block.alpha - theta + 0.5 * turned)
-        fallen = 2.0 * block.R * mean * 0.5 * np.sinc(0.5 * turned / math.pi)
-        lever = block.R * math.sin(block.alpha - theta + turned)
-        return 2.0 * math.sqrt((gyration + lever * lever) / (2.0 * block.gravity * fallen))
-
-    end = math.sqrt(theta)
-    time, _ = quad(slowness, 0.0, end, epsabs=0.0, epsrel=1e-13)
-    return time, 2.0 * end / slowness(end)
 
 
 def overturning_amplitude(omega_over_p, half_cycles):

@@ -6,7 +6,6 @@ from functools import partial
 
 import numpy as np
 import pytest
-from closed_forms import frictionless_fall
 
 from analytic import RigidBlock, SinePulse, overturning_modes, simulate
 from analytic.block import GRAVITY
@@ -168,12 +167,6 @@ def test_the_frequency_beyond_which_nothing_overturns_after_one_impact(
         modes = overturning_modes(alpha, amplitudes, middle, 2, model, restitution).mode
         below, above = (middle, above) if (modes == 1).any() else (below, middle)
     assert below == pytest.approx(printed, rel=within)
-
-
-def test_a_drop_without_friction():
-    """Siconos prints 16 digits of the time [s] and the rate [rad/s] of the first strike."""
-    time, rate = frictionless_fall(RigidBlock(width=1.0, height=0.5), math.pi / 3.0)
-    assert (time, rate) == pytest.approx((0.587477974574, 4.130760093380), abs=5e-13)
 
 
 R, W = 0.925, 4.0
