@@ -108,7 +108,7 @@ def finding(tables: Tables) -> str:
 
 def shown(tables: Tables) -> Tables:
     """Return a line for each source, and the paper's conclusions."""
-    columns = ["source", "cases", "agree", *KINDS, "median_error", "p90_error", "max_error"]
+    columns = ["source", "cases", "agree", *KINDS, "median_error", "max_error"]
     return {
         "All figures": over_all(tables["summary"])[[*columns, "wall_s"]],
         "The paper's conclusions": tables["findings"][["holds", "statement"]],

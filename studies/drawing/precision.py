@@ -76,8 +76,8 @@ def _lines(axes: Axes, lines: pd.DataFrame, cloud: pd.DataFrame) -> None:
 
     Of the cloud two are named: the most accurate one and MuJoCo, or the next one.
     """
-    ends = cloud.groupby("method", sort=False)["error"].last().sort_values(kind="stable").index
-    best = sorted(ends, key=lambda name: name != ends[0] and parts_of(name)[0] != "mujoco")[:2]
+    least = cloud.groupby("method", sort=False)["error"].last().sort_values(kind="stable").index
+    best = sorted(least, key=lambda it: it != least[0] and parts_of(it)[0] != "mujoco")[:2]
     drawn = pd.concat([lines, cloud[cloud["method"].isin(best)]])
     ends = drawn.groupby("method", sort=False)["error"].last().sort_values(kind="stable")
     low, high = np.log(axes.get_ylim())

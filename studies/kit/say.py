@@ -8,7 +8,8 @@ import os
 import sys
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from textwrap import fill
+from itertools import accumulate
+from textwrap import fill, wrap
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -144,11 +145,21 @@ def number(value: object) -> str:
 
 
 def in_columns(table: pd.DataFrame) -> str:
-    """Return a table as aligned text, words to the left and numbers to the right."""
+    """Return a table as aligned text, words to the left, numbers to the right: what fits a line."""
     numeric = [kind.kind in "biuf" for kind in table.dtypes]
     rows = [list(map(str, table.columns)), *table.head(SHOWN).map(number).to_numpy().tolist()]
+    ends = [0, *accumulate(max(map(len, column)) + 2 for column in zip(*rows, strict=True))]
+    last = min(max(sum(end <= WIDTH + 2 for end in ends) - 2, 1), len(numeric) - 1)
+    last += numeric[last + 1 : last + 2] == [False] and WIDTH - ends[last + 1] >= 35  # wrapped
+    start = ends[last]
+    rows = [
+        [*row[:last], f"\n{start * ' '}".join(wrap(row[last], max(WIDTH - start, 20)))]
+        for row in rows
+    ]
     more = [f"and {len(table) - SHOWN} more rows"] if len(table) > SHOWN else []
-    return "\n".join([aligned(rows, numeric), *more])
+    if others := list(map(str, table.columns[last + 1 :])):
+        more.append(fill(f"not shown: {', '.join(others)}", WIDTH))
+    return "\n".join([aligned(rows, numeric[: last + 1]), *more])
 
 
 def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool]) -> str:
@@ -162,5 +173,6 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool]) -> str:
 def as_text(finding: str, tables: Mapping[str, pd.DataFrame]) -> str:
     """Return paragraphs and, under their titles, the tables that have rows."""
     paragraphs = [fill(each, WIDTH) for each in finding.split("\n\n")]
-    shown = [f"{title}:\n{in_columns(table)}" for title, table in tables.items() if len(table)]
+    named = [(f"{title}:", table) for title, table in tables.items() if len(table)]
+    shown = [f"{fill(title, WIDTH)}\n{in_columns(table)}" for title, table in named]
     return "\n\n".join([*paragraphs, *shown])

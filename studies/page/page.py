@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from engines import ENGINES
 from studies.cases.paper import PULSES
 from studies.kit.pictures import lay_out, write_points
-from studies.kit.say import SMALL, part
+from studies.kit.say import number, part
 from studies.kit.store import engines_of, provenance_of
 from studies.kit.tables import table_in, write_text
 from studies.measures.presets import in_order, look_of
@@ -25,8 +25,6 @@ from studies.page.facts import presets
 from studies.sources.registry import resolve
 from studies.sweep import STUDY as SWEEP
 
-GOOD, BAD = 1e-3, 0.1
-"""Largest errors below which, and above which, a tile is marked."""
 SHOWN = 20
 """Rows of a table, and failures, that are shown; files hold all of them."""
 AXES = ("half_cycles", "aspect", "width_m", "onsets", "omega_over_p")
@@ -71,14 +69,8 @@ def first_sight(folder: Path) -> dict[str, Any]:
 
 
 def _tile(line: dict[Any, Any]) -> dict[str, str]:
-    lost = any(line[kind] for kind in KINDS)
-    good, bad = not lost and line["max"] < GOOD, lost or line["max"] > BAD
-    return {
-        "kind": "good" if good else "bad" if bad else "",
-        "wrong": str(sum(line[kind] for kind in KINDS)),
-        "median": part(line["median"]),
-        "max": part(line["max"]),
-    }
+    wrong = str(sum(line[kind] for kind in KINDS))
+    return {"wrong": wrong, "median": part(line["median"]), "max": part(line["max"])}
 
 
 def _section(one: Part, folder: Path, full: bool) -> dict[str, Any]:
@@ -115,13 +107,12 @@ def table(rows: pd.DataFrame) -> tuple[list[str], list[list[tuple[str, str]]]]:
 
 
 def cell(value: Any) -> tuple[str, str]:
-    """Return what is shown of a value, a number in four digits, and what it is sorted by."""
+    """Return what is shown of a value, and what it is sorted by."""
     if not isinstance(value, int | float) or isinstance(value, bool):
         return str(value), str(value)
     if math.isnan(value):
         return "–", ""
-    small = 0.0 < abs(value) < SMALL
-    return f"{value:.3e}" if small else f"{value:.4g}", repr(value)
+    return number(value), repr(value)
 
 
 def failures(tables: dict[str, pd.DataFrame]) -> list[dict[Any, Any]]:

@@ -53,6 +53,7 @@ def test_a_study_is_drawn_and_worded_from_its_tables_alone(name, tmp_path, capsy
     assert run(arguments) == 0
     printed = capsys.readouterr().out
     assert printed == (tmp_path / "findings.txt").read_text()
+    assert max(map(len, printed.splitlines())) < 100
     tables, pictures = study.read(tmp_path), read_all(tmp_path, "*.png")
     finding = study.finding(tables)
     assert re.match("[A-Z0-9]|pymunk ", finding) and finding.endswith(".")
