@@ -1,4 +1,4 @@
-"""A block sleeps in a world that was made with doSleep=False.
+"""A block sleeps though the world was made with doSleep=False.
 
 The constructor stores doSleep as a Python attribute, allowSleeping, that the library never reads.
 

@@ -1,6 +1,6 @@
-"""The same calls have another answer after others, by where in memory the bodies came to be.
+"""The same calls give other results if the bodies lie elsewhere in memory.
 
-Its detector knows a contact by its place on the body of the lower address, and PGS starts from it.
+The detector keys a contact by its place on the body with the lower address; PGS starts from it.
 
 Kind: memory
 """

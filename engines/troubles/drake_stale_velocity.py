@@ -1,6 +1,6 @@
 """With CENIC an evaluated velocity is that of the step before.
 
-The plant's own state is new, and what was evaluated from the last one is still taken for it.
+The plant has a new state, but returns the velocity that it evaluated from the old one.
 
 Kind: stale values
 """

@@ -1,6 +1,6 @@
 """A box sinks into the ground, the deeper the heavier it is.
 
-The stiffness of a contact is by default 2500 N/m, whatever it has to carry.
+By default a contact has a stiffness of 2500 N/m, whatever its load.
 
 Kind: sinking
 """

@@ -1,4 +1,4 @@
-"""A body whose motions are locked yields under what stands on it, which then sinks into it.
+"""A body with locked motions yields under its load, which then sinks into it.
 
 Contacts are solved as if nothing were locked, and a lock takes its velocity away afterwards.
 

@@ -1,6 +1,6 @@
-"""A block that has fallen stays within the floor.
+"""A fallen block stays sunk in the floor.
 
-No depth below collision_slop is corrected: it is 0.1, of whatever unit of length is counted in.
+No depth below collision_slop is corrected; the slop is 0.1 in whatever unit of length is used.
 
 Kind: sinking
 """
