@@ -42,13 +42,11 @@ def jobs(sources: Iterable[str], quick: bool, options: Options) -> list[Job]:
     options.refuse_idle(sources := tuple(sources))
     effort = {source: options.options(source) for source in sources}
     return [
-        Job(
-            labels=asdict(case),
-            case=Question(system=case.block, motion=case.motion),
-            source=source,
-            options=effort[source],
-        )
-        for case in sweep_cases(options.figure)
+        Job(labels=labels, case=case, source=source, options=effort[source])
+        for labels, case in [
+            (asdict(case), Question(system=case.block, motion=case.motion))
+            for case in sweep_cases(options.figure)
+        ]
         for source in sources
     ]
 
