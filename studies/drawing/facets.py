@@ -48,10 +48,7 @@ def error_scale(axis: Axis, low: float, high: float, every: int = 2) -> None:
     """Mark a logarithmic axis of relative errors, in per cent or, with tiny ones, in powers."""
     errors = [10.0**k for k in range(0, -17, -every) if low <= 10.0**k <= high]
     percent = min(errors, default=1.0) > 0.9e-6
-    marks = [
-        f"{100.0 * it:.4f}".rstrip("0").rstrip(".") + " %" if percent else power(it)
-        for it in errors
-    ]
+    marks = [f"{100.0 * it:g} %" if percent else power(it) for it in errors]
     axis.set_ticks(errors, marks)
     axis.set_ticks([], minor=True)
 

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import AT_REST, REST_S, Help, Stepping
-from engines.factors import BEST, DEFAULT, LEFT_OUT, OWN_STEP, OWN_STEPS
+from engines.declaration import AT_REST, Help, Stepping
+from engines.factors import BEST, DEFAULT, LEFT_OUT
 from engines.registry import OWN
 from engines.run.export import broken
 from studies.advise import cheapest, pairs
 from studies.advise import unadvised as not_advised
-from studies.cases.variants import AT_ONCE
 from studies.kit.identity import NOT_INSTALLED
 from studies.kit.say import capital, duration, listed, number, part, signed
 from studies.kit.store import engines_of, provenance_of, whole_runs
@@ -198,21 +197,12 @@ def lasts(*records: Mapping[str, Any]) -> str:
     return f"{first} the first time, when its functions are compiled, and for {later} later"
 
 
-def once(rows: Iterable[Sequence[str]]) -> list[list[str]]:
-    """Return rows whose first cell is left empty where it is that of the row before."""
-    found: list[list[str]] = []
-    before = ""
-    for first, *others in rows:
-        found.append(["" if first == before else first, *others])
-        before = first
-    return found
-
-
 def documented() -> Iterator[tuple[str, ...]]:
     """Yield what the documentation of each engine sets or recommends, and where it says so."""
     for name in OWN:
         for use in ENGINES[name].presets:
-            yield from ((f"{TITLES[name]} `:{use.name}`", *source) for source in use.documented)
+            for row, source in enumerate(use.documented):
+                yield (f"{TITLES[name]} `:{use.name}`" if row == 0 else "", *source)
 
 
 def _error(line: Line) -> str:
@@ -237,17 +227,6 @@ def helps(published: Path) -> Table:
         if {*cells} != {"–"}:
             rows.append([capital(each.value), *cells])
     return ["landing without", *(TITLES[name] for name in engines)], rows
-
-
-def unsettled(published: Path) -> Table:
-    """Return the largest error of each engine as documented, and without the rest before it."""
-    lines = table_in(published / "contact", "variants", "factor", "level", "trap")
-    lines = lines[(lines["preset"] == DEFAULT) & (lines["factor"] == OWN_STEPS)]
-    lines = lines.assign(cell=[_error(line) for line in lines.to_dict("records")])
-    cells = lines.pivot(index="engine", columns="level", values="cell")
-    cells = cells.reindex(index=[*TITLES], columns=[OWN_STEP, AT_ONCE], fill_value="–")
-    rows = [[TITLES[name], *line] for name, *line in cells.itertuples()]
-    return ["engine", f"after {REST_S:g} s at rest", "shaken at once"], rows
 
 
 def _prices(lines: pd.DataFrame, engine: str) -> dict[str, str]:

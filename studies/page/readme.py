@@ -126,7 +126,7 @@ def pages(root: Path) -> dict[Path, str]:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    filters = (capital, duration, facts.once, in_words, part, row)
+    filters = (capital, duration, in_words, part, row)
     environment.filters |= {each.__name__: each for each in filters}
     chapters = {
         title: [_told(one, published / one.folder) for one in parts if one in known]
