@@ -79,7 +79,7 @@ def _section(one: Part, folder: Path, full: bool) -> dict[str, Any]:
     return {
         **one.found(tables, full),
         "full_command": one.command(True),
-        "how": study.help,
+        "how": study.help.partition("\n\n")[0],
         "weaker": one.weaker or study.quick,
         "pictures": [(study.caption_of(name), embedded(each)) for name, each in drawn.items()],
         "tables": [
