@@ -236,8 +236,8 @@ def figures(tables: Tables) -> Figures:
     return {"contact": draw_contact(left)} if len(left) else {}
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="contact",
     question="How much does each contact setting change errors and run time?",
     help="""One contact setting of an engine at a time: solver, geometry, friction, damping, ...
 
@@ -247,6 +247,12 @@ failed variant is a result: the exit code is 1 only if a whole preset fails. Wri
 variants.csv, own-steps.csv, findings.txt and contact.png.""",
     options=Options,
     quick="Fewer cases and twice the step: less than a minute on 2 cores.",
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     needed=lambda rows: [row for row in rows if not row["factor"] and not row["own_step"]],
     texts=("factor", "level", "trap"),
     captions={

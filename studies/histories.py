@@ -149,14 +149,20 @@ FIGURES = {
 }
 """Figure -> its title, and what the paper says about it."""
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="histories",
     question="Do the paper's statements about its time histories hold?",
     help="""The paper's time histories, figures 2, 4 and 5.
 
 Tests what the paper says about them. Takes a few seconds. Writes histories.csv, findings.csv,
 findings.txt, and a table and a picture for each figure.""",
     options=Options,
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     captions={
         "figure": "Rotation against time: a line for each source, a panel for each case.",
         "figure-2": "Rotation against time, and below it the difference of each solver from the "

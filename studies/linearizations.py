@@ -166,8 +166,8 @@ def conclusion(lines: pd.DataFrame) -> Finding:
     )
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="linearizations",
     question="Which part of a linearization errs most: onset, frequency or saddle?",
     help="""The error of a linearization's parts: onset, frequency and saddle, each changed alone.
 
@@ -175,6 +175,12 @@ Compares all eight combinations of Housner's and the modified choices with the e
 the paper's cases and on a wider grid. Takes half a minute. Writes linearizations.csv,
 slenderness.csv, findings.csv, findings.txt and a picture.""",
     texts=("changed",),
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     captions={
         "linearizations": "Median error of the peak against H/B, for eight linearizations on two "
         "grids; colours stand for the onset, dashes for the frequency.",

@@ -280,8 +280,8 @@ def figures(tables: Tables) -> Figures:
     return drawn
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="overturning",
     question="Which pulses overturn a block, and where do sources err?",
     help="""Overturning maps: which pulses overturn a block, after how many impacts.
 
@@ -304,5 +304,11 @@ compute single pulses on two similar blocks.""",
         "after-rest": "The same maps for pulses after a second of rest, in which an engine may put "
         "the block to sleep.",
     },
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
 )
 command = STUDY.command()

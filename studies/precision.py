@@ -312,8 +312,8 @@ def figures(tables: Tables) -> Figures:
     return {"precision": draw_precision(tables["work-precision"])}
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="precision",
     question="What accuracy does a given run time buy, and what can be left out?",
     help="""Error against run time of every method, from coarse to fine settings, on the same cases.
 
@@ -325,6 +325,12 @@ moving base. A compiled loop over mj_step takes MuJoCo's steps; Python takes all
 --jobs above 1 processes slow each other down. Takes about 10 minutes.""",
     sources=(*dict.fromkeys(method.source for method in PLAIN.values()), *core_sources()),
     quick="Fewer cases and settings, shorter timing: one and a half minutes.",
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     needed=lambda rows: [row for row in rows if row["table"] == ALONG],
     captions={
         "precision": "Median error of the peak against run time, from coarse to fine settings: "

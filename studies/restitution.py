@@ -229,8 +229,8 @@ def figures(tables: Tables) -> Figures:
     return {"strikes": draw_strikes(tables["restitution"], plain, best)}
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="restitution",
     question="Which settings give the coefficient of restitution that is set?",
     help="""The coefficient of restitution of one impact: a corner's speed after over before.
 
@@ -238,6 +238,12 @@ Coefficients from 0 to 1 are set; the place of the impact within a step varies, 
 rate, height and slenderness. A column gives the share of its angular rate that the block keeps.
 Takes half a minute. Writes restitution.csv, corners.csv, findings.txt and a picture.""",
     options=Options,
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     texts=("way", "varied", "literal"),
     captions={
         "strikes": "Restitution of the striking corner against the coefficient that is set, with "

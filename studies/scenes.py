@@ -343,8 +343,8 @@ def _engines_in(lines: pd.DataFrame) -> pd.DataFrame:
     return lines[np.array([is_engine(name) for name in lines.get("source", ())], bool)]
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="scenes",
     question="Do engines predict frames, sliding blocks and moving floors?",
     help="""A frame, a sliding block and a moving floor, compared with their exact solutions.
 
@@ -356,6 +356,12 @@ slides test settings that were not tuned on them. A row says what an engine cann
 hours.""",
     sources=core_sources("default", "tuned", "landing"),
     quick="One frame and one slide, two offsets of the steps, three random cases of each.",
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     needed=lambda rows: [row for row in rows if row["reason"] != Reason.UNAVAILABLE.name],
     captions={
         "frame-time": "Each engine and preset on frames: the median and the largest error of the "

@@ -237,10 +237,16 @@ def figures(tables: Tables) -> Figures:
     return drawn
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="score",
     question="What does one engine predict, and did it get worse?",
     help="The paper's cases, errors along the step, extreme cases, slides and frames.",
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     needed=lambda rows: [row for row in rows if row["part"] in (MODEL, SWEEP)],
 )
 

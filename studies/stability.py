@@ -129,8 +129,8 @@ def figures(tables: Tables) -> Figures:
     return {"stability": draw_scores(finding(tables), engines, cases)} if len(engines) else {}
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="stability",
     question="Which methods stay finite, right and accurate in stiff and extreme cases?",
     help="""Stiff and extreme cases: which methods stay finite and keep outcome and energy.
 
@@ -141,7 +141,13 @@ minutes. Writes stability.csv, findings.txt and a picture.""",
         *("exact", "rk4", "average-acceleration", "dop853", "radau"),
         *core_sources("", "tuned", "default"),
     ),
+    jobs=jobs,
+    measure=measure,
     needed=without_result,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     captions={
         "stability": "Valid extreme cases that each engine predicts with each preset; below, the "
         "six cases on which presets differ most.",

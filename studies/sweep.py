@@ -231,8 +231,8 @@ def _ranges(values: Iterable[float]) -> str:
     return ", ".join("–".join(f"{tenth / 10:g}" for tenth in end) for end in ends)
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="sweep",
     question="Do the engines and the linearizations predict the paper's cases?",
     help="""The paper's sensitivity analysis, figures 6 to 9.
 
@@ -241,6 +241,11 @@ default sources. To continue an interrupted run, give the same command again. Wr
 summary.csv, findings.csv, findings.txt and a picture of each figure.""",
     sources=("exact", "housner", "modified", "onset-matched", *core_sources()),
     options=Options,
+    jobs=jobs,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     rows="sweep",
     captions={
         "overview": "Each engine and preset: the median and the largest error of the peak, the "

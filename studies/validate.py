@@ -179,8 +179,8 @@ def figures(tables: Tables) -> Figures:
     return {"validate": draw_conditioning(tables["errors"])} if "errors" in tables else {}
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="validate",
     question="Do sources predict random cases, on which no setting was tuned?",
     help="""Random blocks (H/B 1.2 to 12, B 0.02 to 10 m) under pulses of 1.02 to 4 times the onset.
 
@@ -190,6 +190,11 @@ same engine at half the step, and writes estimate.csv, estimates.csv and factors
     sources=core_sources(),
     options=Options,
     quick="100 random cases; with --halves 20, and 10 to test the factors.",
+    jobs=jobs,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     captions={
         "validate": "Errors of random cases in bands of the sensitivity S: for each engine the "
         "median, the middle half and the extremes.",

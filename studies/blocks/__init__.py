@@ -280,10 +280,16 @@ def figures(tables: Tables) -> Figures:
     return drawn
 
 
-STUDY = Study.of(
-    globals(),
+STUDY = Study(
+    name="blocks",
     question="Which blocks of a list overturn under recorded ground motions, with what margin?",
     help="",
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
     texts=("name", "record", "record_digest", "source", "outcome", "no_margin"),
     captions={
         "blocks": "Blocks ranked by the factor on a record that overturns them first, "

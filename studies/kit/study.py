@@ -7,7 +7,7 @@ from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import pandas as pd
 from cyclopts import Parameter
@@ -30,8 +30,6 @@ Figures: TypeAlias = "Mapping[str, Figure]"
 """Figures by the names of their files."""
 
 
-STAGES = ("jobs", "measure", "tabulate", "finding", "shown", "figures")
-"""What a study does, from first to last."""
 SHARED = Parameter(show=False)
 """What marks the options that `rocking help run` explains, once for all studies."""
 
@@ -65,12 +63,6 @@ class Study:
     texts: tuple[str, ...] = ()  # columns of words that may look like numbers
     rows: str = ""  # a table of the rows as they are: a folder without a store goes on from it
     alone: bool = False  # whether its jobs run one at a time, unless --jobs says otherwise
-
-    @classmethod
-    def of(cls, module: Mapping[str, Any], **about: Any) -> Self:
-        """Return the study of a module: it has its name, and its functions are the stages."""
-        stages = {name: module[name] for name in STAGES if name in module}
-        return cls(name=module["__name__"].rpartition(".")[2], **stages, **about)
 
     def command(self) -> Callable[..., int]:
         """Return its command: the function whose parameters are the command's options."""
