@@ -16,17 +16,20 @@ def in_this_process(request, monkeypatch):
         monkeypatch.setattr(Job, "needs_process", False)
 
 
-@pytest.fixture
-def alone(monkeypatch):
-    """Let what is announced be forgotten after the test."""
-    monkeypatch.setenv(registry.FURTHER, "")
+def forgetting():
+    """Let what is announced be forgotten afterwards."""
     kept = dict(SOURCES)
-    yield
-    monkeypatch.undo()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(registry.FURTHER, "")
+        yield patch
     registry._places.cache_clear()
     registry._declared.cache_clear()
     SOURCES.clear()
     SOURCES.update(kept)
+
+
+alone = pytest.fixture(forgetting)
+alone_in_module = pytest.fixture(forgetting, scope="module")
 
 
 @pytest.fixture

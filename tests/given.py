@@ -33,7 +33,7 @@ def pulse(onsets, omega_over_p, half_cycles=1, block=BLOCK, phase=0.0):
 
 
 def noise(seed, count, dt, peak, width=0.12):
-    """Return a smooth random record whose samples are correlated over `width` [s]."""
+    """Return a smooth random record of a seed or a generator, correlated over `width` [s]."""
     draw = np.random.default_rng(seed).normal(size=count)
     kernel = np.exp(-0.5 * (np.arange(-3 * width, 3 * width, dt) / width) ** 2)
     shaken = np.convolve(draw, kernel, mode="same") * np.sin(np.linspace(0, math.pi, count))

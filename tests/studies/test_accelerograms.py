@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 import pytest
-from commanding import BLOCK, ROOT, compared, python, refused
+from commanding import BLOCK, ROOT, compared, refused
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from records import ASC_COLUMN, ASC_HEADER, AT2, COLUMNS, SAMPLES, TITLE, write_record
@@ -365,15 +365,6 @@ def test_whatever_a_file_holds_it_is_a_record_or_refused(content, edits, units, 
 
 IN_G = ["compare", *BLOCK, "--units", "g", "--record"]
 BEGIN = "rocking: --record is "
-
-
-def test_a_named_pipe_is_not_waited_for(tmp_path):
-    """In a process of its own, for one that waits would wait for ever."""
-    path = tmp_path / "pipe"
-    os.mkfifo(path)
-    done = python("-m", "studies", *IN_G, path)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "it must be a file that can be read (it is a named pipe)" in done.stderr
 
 
 ROW_BY_ROW = b"0 0\n" * (MOST_SAMPLES + 5001)

@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from given import noise, onset_of
 
 from analytic import Outcome, Record, RigidBlock, simulate
 from studies import respond
 
 BLOCK = RigidBlock(width=1.0, height=2.0)
-ONSET = BLOCK.gravity * math.tan(BLOCK.alpha)
+ONSET = onset_of(BLOCK)
 BURSTS, SAMPLES, DT = 40, 500, 0.01
 
 ERROR_OVER_CONDITION = {"dop853": 1e-9, "rk45": 1e-9, "mujoco": 1e-5, "pybullet": 1e-5}
@@ -21,13 +22,10 @@ Measured: 2e-15 to 7e-12, and 6e-8 to 7e-7."""
 def bursts(seed, width):
     """Return bursts of noise, correlated over `width` [s], each followed by as long a silence."""
     draw = np.random.default_rng(seed)
-    kernel = np.exp(-0.5 * (np.arange(-3.0 * width, 3.0 * width, DT) / width) ** 2)
-    window = np.sin(np.linspace(0.0, math.pi, SAMPLES // 2))
     parts = []
     for _ in range(BURSTS):
-        noise = np.convolve(draw.normal(size=window.size), kernel, mode="same") * window
-        strength = draw.uniform(1.1, 1.5) * ONSET / np.abs(noise).max()
-        parts += [strength * noise, np.zeros(window.size)]
+        burst = noise(draw, SAMPLES // 2, DT, 1.0, width)
+        parts += [burst.scaled_to(draw.uniform(1.1, 1.5) * ONSET).samples, np.zeros(SAMPLES // 2)]
     return Record(dt=DT, samples=np.concatenate(parts))
 
 

@@ -1,11 +1,9 @@
 """What a student sees in a notebook: pictures of responses and of the paper's figures."""
 
 import pytest
+from given import BLOCK, PULSE
 
 import studies
-from analytic import RigidBlock, SinePulse
-
-BLOCK, PULSE = RigidBlock(width=0.5, height=1.5), SinePulse.in_g(0.4, omega=6.2832)
 
 
 def test_responses_with_a_history_are_a_picture_of_as_many_lines():

@@ -1,6 +1,7 @@
 """Whatever cannot be asked is refused at once, in a line that says what is allowed."""
 
 import json
+import os
 import shlex
 import time
 
@@ -86,6 +87,7 @@ compare BLOCK --record X.AT2 --duration 0.01 | length of the motion, 0.03 s
 compare BLOCK --record /nowhere/at.all | --record is | a file that can be read (No such file
 compare BLOCK --record /dev/null | --record is | a file that can be read (it is a device)
 compare BLOCK --record . | --record is | a file that can be read (it is a folder)
+compare BLOCK --record PIPE | --record is | a file that can be read (it is a named pipe)
 compare CASE --baseline none | only with --record
 export CASE --out DIR --engine mujoco --record x | it may be given only without --record
 blocks list.csv --record X.AT2 ./X.AT2 --out DIR | --record names 'X.AT2' twice
@@ -173,11 +175,12 @@ def words_of(line):
 
 @pytest.fixture
 def place(tmp_path, monkeypatch):
-    """Work in a folder with a list of blocks, a record, and one that does not move."""
+    """Work in a folder with a list of blocks, a record, one that does not move, and a pipe."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "list.csv").write_text("name,width,height\nA,0.5,1.5\n")
     (tmp_path / "X.AT2").write_text(AT2["series"])
     (tmp_path / "comma.csv").write_text("name;width;height\nA;0,5;x\n")
+    os.mkfifo("PIPE")  # who waits for it waits for ever
     (tmp_path / "still.csv").write_text("time_s,acceleration\n0,0\n0.1,0\n0.2,0\n")
     return tmp_path
 

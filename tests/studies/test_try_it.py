@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from given import BLOCK, PULSE
 
 from analytic import RigidBlock, SinePulse, simulate
 from engines.scene import free_rocking_window
@@ -72,11 +73,7 @@ def test_the_commands_of_the_page_ask_what_it_shows(source, capsys, tmp_path):
     compare, *export = json.loads(engine.eval(f"JSON.stringify(commands({values}))"))
     assert run([*compare.split()[1:], "--json", "--jobs", "1"]) == 0
     found = json.loads(capsys.readouterr().out.splitlines()[-1])
-    block, pulse = (
-        RigidBlock(width=0.5, height=1.5),
-        SinePulse.in_g(0.4, omega=6.2832, half_cycles=2),
-    )
-    peak = respond(source, block, pulse).peak_ratio
+    peak = respond(source, BLOCK, PULSE).peak_ratio
     assert (found["source"], found["peak_ratio"]) == (source, pytest.approx(peak, rel=1e-9))
     for line in export:
         assert run(line.replace("DIR", str(tmp_path)).split()[1:]) == 0

@@ -11,7 +11,6 @@ import pytest
 from given import BLOCK, FULL_SINE
 
 from analytic import SinePulse
-from engines import registry
 from engines.declaration import Stepping
 from engines.run.run import simulate_world
 from engines.scene import Scene
@@ -28,22 +27,15 @@ LIMIT_S = 3.0
 
 
 @pytest.fixture(scope="module")
-def rows(tmp_path_factory):
+def rows(alone_in_module, tmp_path_factory):
     """Return the row of each hostile world, all of them run in the same two processes."""
     note = tmp_path_factory.mktemp("hostile") / "note"
-    kept = dict(SOURCES)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(hostile.NOTE, str(note))
-        patch.setenv(registry.FURTHER, "")
-        for world in SAID:
-            announce(f"hostile:{world}", lambda place: place.rpartition(":")[2])
-        case = Question(system=BLOCK, motion=PULSE)
-        jobs = [Job(labels={}, case=case, source=world) for world in SAID]
-        found = dict(local(jobs, answer, 2, LIMIT_S, at_once=True))
-    registry._places.cache_clear()
-    registry._declared.cache_clear()
-    SOURCES.clear()
-    SOURCES.update(kept)
+    alone_in_module.setenv(hostile.NOTE, str(note))
+    for world in SAID:
+        announce(f"hostile:{world}", lambda place: place.rpartition(":")[2])
+    case = Question(system=BLOCK, motion=PULSE)
+    jobs = [Job(labels={}, case=case, source=world) for world in SAID]
+    found = dict(local(jobs, answer, 2, LIMIT_S, at_once=True))
     return {job.source: found[number] for number, job in enumerate(jobs)}, note
 
 

@@ -4,7 +4,7 @@ Independent of the package: equations (1) and (2) of the paper as printed, in se
 by mpmath's own Taylor method, impacts and turning points by bisection and the secant method on its
 dense output, and the free rocking after the pulse by conservation of energy.
 
-exact.csv has the cases below, extreme.csv those of `rocking stability`, whose numbers alone are the
+exact.csv keeps its cases, extreme.csv has those of `rocking stability`, whose numbers alone are the
 package's. One that the scan cannot follow (an excursion shorter than the scan, a rest between
 impacts) is left out, and named on the way, and so are pulses of hundreds of 1/p.
 
@@ -24,32 +24,10 @@ mp.mp.dps = 30
 G = mp.mpf("9.81")
 SCAN = 60
 
-# width, height, amplitude [m/s2], omega [rad/s], half cycles: taken as the doubles they are read as
-CASES = [
-    (0.5, 3.0, 1.962, 6.25, 1),
-    (0.5, 1.5, 3.924, 6.25, 1),
-    (0.5, 1.0, 6.867, 6.25, 1),
-    (0.5, 3.0, 1.962, 6.25, 2),
-    (0.5, 1.5, 3.924, 6.25, 2),
-    (0.5, 1.0, 5.886, 6.25, 2),
-    (1.0, 3.0, 3.924, 6.25, 2),
-    (0.5, 1.0, 5.5, 1.5, 1),
-    (0.5, 1.0, 6.5, 12.0, 2),
-    (0.5, 1.5, 3.75, 3.0, 2),
-    (0.5, 2.0, 3.0, 12.0, 2),
-    (1.0, 4.0, 2.75, 2.0, 1),
-    (1.0, 4.0, 3.5, 8.0, 3),
-    (0.25, 2.5, 1.25, 5.0, 4),
-    (0.125, 1.25, 1.5, 25.0, 6),
-    (2.0, 3.0, 8.0, 4.0, 3),
-    (0.5, 0.75, 9.0, 10.0, 2),
-    (0.03125, 0.125, 3.25, 40.0, 2),
-    (8.0, 32.0, 3.0, 1.5, 2),
-    (0.5, 1.5, -3.924, 6.25, 2),
-    (0.5, 5.0, 1.5, 20.0, 5),
-    (0.5, 1.5, 6.0, 6.25, 2),
-    (0.5, 3.0, 4.0, 2.0, 2),
-]
+HERE = Path(__file__).parent
+# taken as the doubles they are read as
+with (HERE / "exact.csv").open(newline="") as kept:
+    CASES = [(*map(float, row[:4]), int(row[4])) for row in [*csv.reader(kept)][1:]]
 
 
 def solve(width, height, amplitude, omega, half_cycles, restitution=None):
@@ -120,7 +98,7 @@ SLOWEST = 0.1
 
 
 def write(name, columns, rows):
-    with (Path(__file__).parent / name).open("w", newline="") as file:
+    with (HERE / name).open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(columns)
         for row in rows:
