@@ -9,21 +9,9 @@ import pytest
 from given import BLOCK, pulse
 from independent import peak_and_impacts
 
-from analytic import (
-    MODELS,
-    Outcome,
-    RigidBlock,
-    SinePulse,
-    Still,
-    condition_numbers,
-    conditioning,
-    peak_ratios,
-    sensitivities,
-    sensitivity,
-    simulate,
-)
+from analytic import MODELS, Outcome, RigidBlock, SinePulse, Still, peak_ratios, simulate
 from analytic.block import housner_restitution
-from analytic.conditioning import NUDGE
+from analytic.conditioning import NUDGE, condition_numbers, conditioning, sensitivities, sensitivity
 from studies.cases.paper import sweep_cases
 
 NEAR_ONSET = RigidBlock(width=1.5256313519414122, height=9.174363250019729)

@@ -9,16 +9,8 @@ from given import FULL_SINE as PULSE
 from given import G
 from independent import Bodies
 
-from analytic import (
-    MODELS,
-    Record,
-    RigidBlock,
-    RockingFrame,
-    Still,
-    conditioning,
-    frame_restitution,
-    simulate,
-)
+from analytic import MODELS, Record, RigidBlock, RockingFrame, Still, conditioning, simulate
+from analytic.frame import frame_restitution
 from analytic.frame_forces import frame_demands
 
 SIZES = [(0.5, 1.5), (0.5, 2.0), (1.0, 6.0)]

@@ -16,18 +16,8 @@ import pytest
 from given import all_but_times, onset_of
 from numba.core import caching
 
-from analytic import (
-    MODELS,
-    Record,
-    Still,
-    condition_numbers,
-    conditioning,
-    integrate,
-    overturning_modes,
-    peak_ratios,
-    sensitivity,
-    simulate,
-)
+from analytic import MODELS, Record, Still, integrate, overturning_modes, peak_ratios, simulate
+from analytic.conditioning import condition_numbers, conditioning, sensitivity
 from analytic.kernels import forms, kept
 from analytic.steppers import METHODS
 from studies.cases.drawn import draw

@@ -10,17 +10,9 @@ from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from analytic import (
-    MODELS,
-    Delayed,
-    Outcome,
-    Record,
-    RigidBlock,
-    SinePulse,
-    conditioning,
-    housner_restitution,
-    simulate,
-)
+from analytic import MODELS, Delayed, Outcome, Record, RigidBlock, SinePulse, simulate
+from analytic.block import housner_restitution
+from analytic.conditioning import conditioning
 
 MOTIONS = {
     "half sine": SinePulse(amplitude=3.0, omega=5.0),

@@ -7,19 +7,11 @@ from functools import partial
 import pytest
 from given import BLOCK, G
 
-from analytic import (
-    Delayed,
-    Record,
-    RigidBlock,
-    RockingFrame,
-    SinePulse,
-    SlidingBlock,
-    Still,
-    integrate,
-    overturning_modes,
-    peak_ratios,
-    simulate,
-)
+from analytic import Delayed, Record, RigidBlock, RockingFrame, SinePulse, SlidingBlock, Still
+from analytic.cases import peak_ratios
+from analytic.maps import overturning_modes
+from analytic.simulate import simulate
+from analytic.steppers import integrate
 from engines import Scene
 
 INF, NAN = math.inf, math.nan

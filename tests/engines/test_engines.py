@@ -10,25 +10,10 @@ import re
 
 import numpy as np
 import pytest
+import uses
 from declared import NUISANCE, equal_to
 from given import BLOCK, all_but_times, pulse
-from uses import (
-    CORE,
-    HERE,
-    MIRRORED,
-    TUNED,
-    TUNED_IN_FRAMES,
-    agreed,
-    error,
-    every_fixed_use,
-    every_landing_use,
-    every_tuned_use,
-    every_use,
-    in_both_frames,
-    rocked,
-    scene,
-    take_a_step,
-)
+from uses import CORE, HERE, TUNED_IN_FRAMES, agreed, error, rocked, scene, take_a_step
 
 from analytic import RigidBlock, SinePulse, simulate
 from analytic.response import Outcome, Reason
@@ -52,7 +37,7 @@ def test_onset(engine, preset, frame):
     assert above.peak_ratio > 0.0
 
 
-@pytest.mark.parametrize(("engine", "preset"), MIRRORED)
+@pytest.mark.parametrize(("engine", "preset"), uses.MIRRORED)
 def test_mirror(engine, preset):
     """Shaking the other way leans the block the other way."""
     times = [0.1 * i for i in range(1, 20)]
@@ -65,7 +50,7 @@ def test_mirror(engine, preset):
     assert there.peak_ratio > 0.01
 
 
-@every_tuned_use
+@uses.every_tuned_use
 def test_rest_stays_rest(engine, preset):
     response = rocked(engine, pulse(0.5, 1.0), preset=preset, duration=3.0, times=[1.0, 3.0])
     assert response.outcome is Outcome.AT_REST
@@ -73,7 +58,7 @@ def test_rest_stays_rest(engine, preset):
     assert abs(response.history.theta).max() < 1e-3 * BLOCK.alpha
 
 
-@every_landing_use
+@uses.every_landing_use
 def test_how_a_block_lies_does_not_depend_on_the_steps(engine, preset):
     """Not up to the longest ones that the engine declares for a block at rest."""
     block, declared = RigidBlock(width=0.5, height=3.0), HERE[engine]
@@ -93,7 +78,7 @@ def test_how_a_block_lies_does_not_depend_on_the_steps(engine, preset):
     )
 
 
-@every_landing_use
+@uses.every_landing_use
 def test_the_size_of_a_block_does_not_matter(engine, preset):
     """Nothing of it is clamped, lost or rounded away: single precision keeps 1e-4 of the peak."""
     within = 1e-6 if engine in CORE else 1e-4
@@ -103,7 +88,7 @@ def test_the_size_of_a_block_does_not_matter(engine, preset):
     assert peaks == pytest.approx([peaks[1]] * 3, rel=within)
 
 
-@pytest.mark.parametrize(("engine", "preset"), in_both_frames(TUNED))
+@pytest.mark.parametrize(("engine", "preset"), uses.in_both_frames(uses.TUNED))
 def test_frames_agree(engine, preset):
     """A moving base is the body force -m u_g'': the two differ by rounding and slip alone."""
     base, world = (rocked(engine, preset=preset, frame=frame) for frame in FRAMES)
@@ -113,7 +98,7 @@ def test_frames_agree(engine, preset):
     assert world.observables.get(LAG, 0.0) < 1e-6
 
 
-@every_fixed_use
+@uses.every_fixed_use
 def test_first_order(engine):
     """A quarter of the step makes about a quarter of the error, in the mean over cases whose
     impacts fall anywhere in their steps."""
@@ -140,7 +125,7 @@ CLOSE = {
 
 
 @pytest.mark.parametrize("case", CLOSE)
-@every_fixed_use
+@uses.every_fixed_use
 def test_a_fixed_step_is_close_to_the_exact_solution(engine, case):
     block, motion, asked, within = CLOSE[case]
     exact, response = agreed(engine, motion, system=block, preset="tuned", **asked)
@@ -151,7 +136,7 @@ def test_a_fixed_step_is_close_to_the_exact_solution(engine, case):
         assert response.rests == pytest.approx(exact.rests, abs=0.05)
 
 
-@every_use
+@uses.every_use
 def test_overturning(engine, preset):
     """A history ends with the response."""
     response = rocked(engine, pulse(2.0, 0.5), preset=preset, times=[0.1, 0.5, 1e3])
@@ -161,7 +146,7 @@ def test_overturning(engine, preset):
     assert list(response.history.time) == [0.1, 0.5]
 
 
-@every_use
+@uses.every_use
 def test_repeats_bit_by_bit(engine, preset):
     """Whatever was simulated in between, in whichever process."""
     asked = {"preset": preset, "times": [0.1 * i for i in range(10)]}
@@ -184,7 +169,7 @@ def test_worlds_at_once_do_not_disturb_each_other(engine):
         world.close()
 
 
-@every_tuned_use
+@uses.every_tuned_use
 def test_a_sliding_block_is_no_rocking_block(engine, preset):
     response = rocked(engine, pulse(1.3, 1.0), preset=preset, friction=0.05)
     assert (response.outcome, response.reason) == (Outcome.FAILED, Reason.SLID)
@@ -195,7 +180,7 @@ FREEZER = RigidBlock(width=0.6, height=1.8)
 """With a friction of 0.3 it slides flat: it would rock from B/H = 1/3 on."""
 
 
-@every_landing_use
+@uses.every_landing_use
 @pytest.mark.parametrize("shaken", [(0.35, 6.28), (0.8, 9.0)])
 def test_steps_that_land_fail_by_name_once_their_pivot_slides(engine, preset, shaken):
     """Both in a slide of 1.4 % of B, and in one in which MuJoCo's block would overturn."""
@@ -235,7 +220,7 @@ def test_a_pivot_slides_where_the_exact_motion_needs_more_friction(engine):
     assert enough.slip_m < 3e-4 * block.width < short.slip_m
 
 
-@every_fixed_use
+@uses.every_fixed_use
 @pytest.mark.parametrize("limit", [{"time_limit_s": 1e-6}, {"max_steps": 9}])
 def test_limits(engine, limit):
     response = rocked(engine, pulse(1.3, 1.0), preset="tuned", **limit)

@@ -8,23 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import uses
 from closed_forms import free_amplitude, quarter_period
 from declared import rounding
 from known import standing
-from uses import (
-    BLOCK,
-    CORE,
-    HERE,
-    LANDING,
-    agreed,
-    band,
-    every_landing_use,
-    every_use,
-    pulse,
-    rocked,
-    scene,
-    speed_band,
-)
+from uses import BLOCK, CORE, HERE, agreed, band, pulse, rocked, scene, speed_band
 
 from analytic import RigidBlock
 from analytic.motion import SinePulse, Still
@@ -36,7 +24,7 @@ STILL = Still()
 TILT = 0.4 * BLOCK.alpha
 ANY_START = [
     pytest.param(*use, frame, side, marks=[pytest.mark.slow] * (frame == "world" or side < 0.0))
-    for use in LANDING
+    for use in uses.LANDING
     for frame in HERE[use[0]].frames
     for side in (1.0, -1.0)
 ]
@@ -118,7 +106,7 @@ def test_beyond_alpha_and_hardly_tilted(engine, tilt, rate):
         assert found.peak_ratio == pytest.approx(tilt, rel=rounding(engine))
 
 
-@every_use
+@uses.every_use
 def test_a_block_sets_out_from_where_it_should(engine, preset):
     """On the corner on the side of its lean, whatever was tried before so that it is compiled."""
     asked = scene(start=(-TILT, 0.2 * BLOCK.p * BLOCK.alpha), preset=preset)
@@ -135,7 +123,7 @@ pi/3: 0.587477974574 s and 4.130760093380 rad/s."""
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-@every_landing_use
+@uses.every_landing_use
 def test_a_slide_is_no_failure_where_it_is_meant(engine, preset, side):
     """The centre falls straight down, so that the corner slides by half of what the width loses."""
     theta, time, rate = DROP

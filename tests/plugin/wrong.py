@@ -44,20 +44,19 @@ Middle, End = (
 )
 
 
-class Spun(World):
-    """Its moment of inertia is 3 % too large."""
+def scaled(part, name, factor):
+    """Return a world in which something is larger than it should be by a factor."""
 
-    def __init__(self, scene, settings, dt_s):
-        super().__init__(scene, settings, dt_s)
-        self.body.moment *= 1.03
+    def begin(world, *given):
+        World.__init__(world, *given)
+        setattr(getattr(world, part), name, factor * getattr(getattr(world, part), name))
+
+    return type("Scaled", (World,), {"__init__": begin})
 
 
-class Heavy(World):
-    """Its mass is not that of the moment of inertia."""
-
-    def __init__(self, scene, settings, dt_s):
-        super().__init__(scene, settings, dt_s)
-        self.body.mass *= 1.1
+Spun = scaled("body", "moment", 1.03)
+Heavy = scaled("body", "mass", 1.1)
+Damped = scaled("space", "damping", 0.9)
 
 
 class Pulled(World):
@@ -65,12 +64,6 @@ class Pulled(World):
 
     def step(self, step):
         super().step(step._replace(pull_z=1.02 * step.pull_z))
-
-
-class Damped(World):
-    def __init__(self, scene, settings, dt_s):
-        super().__init__(scene, settings, dt_s)
-        self.space.damping = 0.9
 
 
 class Wide(World):

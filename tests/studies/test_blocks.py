@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from closed_forms import overturning_velocity
 from commanding import refused
-from given import noise
+from given import BLOCK, noise
 from records import write_record
 
 from analytic import Outcome, Record, RigidBlock, SlidingBlock, simulate
@@ -56,7 +56,7 @@ def test_each_block_has_its_answers_and_its_margin(place, capsys):
     places = np.abs(np.cumsum(simulate(box, Record.read(place / "X.AT2")).slips))
     slid = strong.loc[("B", "exact"), ["slip_m", "residual_m"]].tolist()
     assert slid == pytest.approx([places.max(), places[-1]]) and len(places) > 1
-    exact = simulate(RigidBlock(width=0.5, height=1.5), Record.read(place / "X.AT2"))
+    exact = simulate(BLOCK, Record.read(place / "X.AT2"))
     assert strong.loc[("A", "exact"), "peak_ratio"] == exact.peak_ratio
     assert (strong.loc["A", "friction_needed"] == exact.friction_needed).all()
     page = (place / "out" / "blocks.html").read_text()
@@ -192,8 +192,7 @@ def test_several_records_of_all_kinds_make_a_fragility(place, capsys):
     assert run([*asked, "--record-dt", "0.01", "--out", "out"]) == 0
     found, fits = read(place), blocks.STUDY.read(place / "out")["fragility"]
     assert set(found["Room"]) == {"007", "x"} and found["pga_g"].tolist() == [0.5] * 6
-    block = RigidBlock(width=0.5, height=1.5)
-    margins = [strength(block, each.scaled_to(4.905)).margin for each in (SHAKEN, other, third)]
+    margins = [strength(BLOCK, each.scaled_to(4.905)).margin for each in (SHAKEN, other, third)]
     assert found.loc[found["name"] == "A", "margin"].tolist() == pytest.approx(margins, rel=1e-5)
     fit = (fits := fits.set_index(["name", "measure"])).loc[("A", "factor")]
     assert fit["records"] == 3 and fit["median"] == pytest.approx(np.median(margins), rel=1e-5)

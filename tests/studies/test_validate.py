@@ -14,20 +14,9 @@ from studies import respond, validate
 from studies.cases.drawn import FRICTION, LEAST_NORMAL, draw
 from studies.kit.jobs import Job, Question
 from studies.kit.run import run
+from studies.measures import halving
 from studies.measures.differences import sensitivity_of
-from studies.measures.halving import (
-    CALIBRATE,
-    FACTORS,
-    MOST_TRUSTED,
-    TEST,
-    Trust,
-    estimate_of,
-    factors,
-    halved,
-    interval,
-    published_trust,
-    step_of,
-)
+from studies.measures.halving import Trust, estimate_of, factors, halved, step_of
 from studies.sources.registry import core_sources
 from studies.validate import STUDY, Options, beside_errors, finding, jobs, quantiles
 
@@ -126,7 +115,7 @@ def test_a_step_in_words_is_halved_as_a_number_and_a_model_has_none():
     assert [halved(job(source)) for source in ("exact", "rk4", "dop853")] == [None] * 3
 
 
-def estimated(errors, differences, use=CALIBRATE):
+def estimated(errors, differences, use=halving.CALIBRATE):
     """Return the lines of estimates.csv for cases whose errors and estimates are given."""
     exact = respond("exact", BLOCK, PULSE).peak_ratio
     posed = {"aspect": 3.0, "half_cycles": 2, "amplitude_g": PULSE.amplitude / BLOCK.gravity}
@@ -144,7 +133,7 @@ def estimated(errors, differences, use=CALIBRATE):
 def test_a_factor_is_a_quantile_of_error_over_estimate_and_tried_on_other_cases():
     found = estimated([1e-3 * n for n in range(1, 101)], [1e-3] * 100)
     assert found["over"].to_numpy() == pytest.approx(range(1, 101), rel=1e-6)
-    other = estimated([0.02, 0.2], [1e-3] * 2, use=TEST)
+    other = estimated([0.02, 0.2], [1e-3] * 2, use=halving.TEST)
     (line,) = factors(pd.concat([found, other])).to_dict("records")
     assert line["factor_95"] == pytest.approx(95.0, rel=1e-6)
     assert line["factor_95_low"] < 95.0 < line["factor_95_high"]
@@ -158,16 +147,16 @@ def test_a_factor_is_a_quantile_of_error_over_estimate_and_tried_on_other_cases(
 )
 def test_the_upper_end_of_a_factor_is_one_of_the_values_or_there_is_none(count, last):
     """All of 71 values are below the 95 % quantile with 0.95^71 = 0.026 > 2.5 %."""
-    assert interval(np.arange(1.0, count + 1.0))[1] == last
+    assert halving.interval(np.arange(1.0, count + 1.0))[1] == last
 
 
 def test_above_thirty_estimates_there_is_no_bound():
-    assert not Trust(MOST_TRUSTED, 300).warning() and Trust(31.0, 300).warning()
+    assert not Trust(halving.MOST_TRUSTED, 300).warning() and Trust(31.0, 300).warning()
     known = pd.DataFrame({"source": ["mujoco", "dart"], "factor_95_high": [1.6, 48.0]})
     assert "1.6" in (words := finding({"factors": known})) and "1 of 2" in words
-    published = pd.read_csv(FACTORS).set_index("source")["factor_95_high"]
-    assert published_trust("mujoco:landing").factor == published["mujoco"]
-    assert published_trust("moreau") is None
+    published = pd.read_csv(halving.FACTORS).set_index("source")["factor_95_high"]
+    assert halving.published_trust("mujoco:landing").factor == published["mujoco"]
+    assert halving.published_trust("moreau") is None
 
 
 def tables_of(*sources, **options):
@@ -190,6 +179,7 @@ def test_cases_that_test_come_first_each_with_its_half(monkeypatch):
     monkeypatch.setattr(validate, "TESTS", (1, 1))
     tables = tables_of("mujoco", halves=True, cases=2, seed=3)
     rows = tables["estimate"]
-    assert list(rows["half"]) == [0, 1] * 3 and list(rows["set"]) == [TEST] * 2 + [CALIBRATE] * 4
+    assert list(rows["half"]) == [0, 1] * 3
+    assert list(rows["set"]) == [halving.TEST] * 2 + [halving.CALIBRATE] * 4
     # of second order: half the step has a fourth of the error, the difference is three fourths
     assert tables["estimates"]["over"].to_numpy() == pytest.approx([4.0 / 3.0] * 3, rel=0.1)
