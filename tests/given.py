@@ -12,6 +12,7 @@ G = BLOCK.gravity
 FULL_SINE = SinePulse.in_g(0.4, omega=2.0 * math.pi, half_cycles=2)
 PULSE = SinePulse.in_g(0.4, omega=6.2832, half_cycles=2)
 """As `commanding.CASE` asks for it, who writes out what omega is."""
+WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])
 
 
 def onset_of(block):

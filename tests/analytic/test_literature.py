@@ -14,7 +14,6 @@ HOGAN = "Hogan, 10th World Conference on Earthquake Engineering, 1992, Table 1 a
 ZHANG = "Zhang and Makris, Rocking response of free-standing blocks under cycloidal pulses, 2001"
 ROUSSOS = "Makris and Roussos, Géotechnique 50(3), 2000, pp. 243-262"
 PEER = "PEER report 2001/07, one cosine of 2 s"
-SICONOS = "Siconos tutorials, RockingBlock, reference file of the integrator LsodarOSI"
 
 COSINE = 0.5 * math.pi
 

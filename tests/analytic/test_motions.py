@@ -5,12 +5,12 @@ import warnings
 
 import numpy as np
 import pytest
-from given import FULL_SINE
+from given import FULL_SINE, WANDERING
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from analytic import MODELS, Delayed, Outcome, Record, RigidBlock, SinePulse, simulate
+from analytic import MODELS, Delayed, Outcome, RigidBlock, SinePulse, simulate
 from analytic.block import housner_restitution
 from analytic.conditioning import conditioning
 
@@ -21,7 +21,7 @@ MOTIONS = {
     "phase below 0": SinePulse(amplitude=-3.0, omega=5.0, half_cycles=6, phase=-1.0),
     "phase beyond pi": SinePulse(amplitude=-3.0, omega=5.0, half_cycles=3, phase=4.0),
     "after a rest": Delayed(FULL_SINE, 1.25),
-    "record": Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25]),
+    "record": WANDERING,
 }
 
 

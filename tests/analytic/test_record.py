@@ -6,7 +6,7 @@ import pickle
 import numpy as np
 import pytest
 from declared import Miss, equal_to, held_to
-from given import BLOCK, ONSET, noise, onset_of
+from given import BLOCK, ONSET, WANDERING, noise, onset_of
 from independent import history_under_samples
 
 from analytic import MODELS, Outcome, Record, RigidBlock, integrate, simulate
@@ -14,8 +14,6 @@ from engines import ENGINES, installed_engines
 from engines.declaration import UNTUNED
 from studies import respond
 from studies.sources.registry import SOURCES
-
-WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])
 
 
 def test_acceleration_is_numpys_interpolation():

@@ -8,10 +8,11 @@ import math
 
 import numpy as np
 import pytest
+from given import WANDERING
 from known import ScriptedWorld, exactly, watched
 from uses import BLOCK, pulse, scene
 
-from analytic import Record, simulate
+from analytic import simulate
 from engines.declaration import Stepping
 from engines.run.ground import mean_velocity_of
 from engines.world import ContactPhase, Moment
@@ -119,9 +120,6 @@ def test_an_impact_that_comes_before_the_base_is_met_is_no_impact():
     assert response.impacts == ()
     assert ContactPhase.STRIKE not in {step.phase for step in world.steps}
     assert len(world.steps) < 4 * 3.0 / LOOSE
-
-
-WANDERING = Record(dt=0.3, samples=[1.0, -2.0, 0.5, 3.0, 3.0, -1.0, 0.25])
 
 
 def test_the_mean_velocity_of_the_base_is_its_displacement_over_time():

@@ -2,6 +2,7 @@
 
 import math
 import shutil
+from dataclasses import fields
 
 import numpy as np
 import pandas as pd
@@ -9,9 +10,10 @@ import pytest
 from declared import equal_to
 from PIL import Image
 
-from analytic import RigidBlock, SinePulse, conditioning, overturning_modes, simulate
+from analytic import conditioning, overturning_modes, simulate
 from engines import ENGINES, installed_engines
 from studies import overturning, respond, restitution, scenes, sweep
+from studies.cases.drawn import RandomCase
 from studies.cases.paper import Case
 from studies.kit.pictures import save_all
 from studies.kit.run import makers_of
@@ -98,18 +100,12 @@ def test_random_cases_are_what_comes_out_today():
     table = published("validate/errors.csv")
     well = table[(table["exact_outcome"] == "rocked") & (table["kappa"].abs() < 10)]
     for row in asked_here(well).groupby("source").sample(3, random_state=7).itertuples():
-        block = RigidBlock(width=row.width_m, height=row.aspect * row.width_m)
-        pulse = SinePulse(
-            amplitude=row.amplitude_g * block.gravity,
-            omega=row.omega_over_p * block.p,
-            half_cycles=row.half_cycles,
-        )
-        within = equal_to(row.source.partition(":")[0], 1e-6)
-        assert respond(row.source, block, pulse).peak_ratio == pytest.approx(
-            row.peak_ratio, rel=within
-        )
-        assert simulate(block, pulse).peak_ratio == pytest.approx(row.exact_peak, rel=1e-9)
-        found = conditioning(block, pulse)
+        case = RandomCase(**{each.name: getattr(row, each.name) for each in fields(RandomCase)})
+        asked, within = (case.block, case.motion), equal_to(row.source.partition(":")[0], 1e-6)
+        response, exact = respond(row.source, *asked), simulate(*asked)
+        assert response.peak_ratio == pytest.approx(row.peak_ratio, rel=within)
+        assert exact.peak_ratio == pytest.approx(row.exact_peak, rel=1e-9)
+        found = conditioning(*asked)
         assert found == pytest.approx((row.kappa, row.kappa_eta), rel=1e-6, abs=1e-12)
 
 

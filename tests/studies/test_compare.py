@@ -158,13 +158,12 @@ def test_a_frame_is_compared(capsys):
 def test_a_frame_is_followed_as_long_by_every_command():
     """Columns part by 0.4 of alpha: DART's in the motion, Box2D's when their peak is over."""
     frame = RockingFrame(width=0.5, height=1.5, columns=3, load=2.0)
-    pulse = SinePulse.in_g(0.5, omega=9.0, half_cycles=2)
     sources = ["exact", "dart:tuned", "box2d:tuned"]
-    case = Question(system=frame, motion=pulse)
+    case = Question(system=frame, motion=STRONGER)
     asked = [Job(labels={"scene": "frame"}, case=case, source=name) for name in sources]
-    compared = side_by_side(frame, pulse, sources).set_index("source")
+    compared = side_by_side(frame, STRONGER, sources).set_index("source")
     for job in asked:
-        row, alone = measure(job), summary(respond(job.source, frame, pulse))
+        row, alone = measure(job), summary(respond(job.source, frame, STRONGER))
         others = alone, compared.loc[job.source]
         assert row["outcome"] == others[0]["outcome"] == others[1]["outcome"]
         peaks = [other["peak_ratio"] for other in others]

@@ -4,7 +4,6 @@ import re
 import subprocess
 import sys
 
-import commanding
 import pytest
 from commanding import CASE, compared, refused, run_scripts
 from declared import run
@@ -14,6 +13,7 @@ from analytic import RockingFrame, SinePulse, SlidingBlock
 from analytic.record import Record
 from engines import ENGINES, Scene, installed_engines
 from engines.declaration import UNTUNED, Stepping
+from engines.run.export import Notes
 from studies import export
 from studies.__main__ import run as rocking
 from studies.kit.identity import version_of
@@ -136,10 +136,14 @@ def test_the_command_writes_what_runs_and_does_not_write_over_it(
     refused(capsys, [*asked, "--out", tmp_path / "scene"], "it must be a new or an empty folder")
 
 
-def test_what_stays_at_rest_is_refused(tmp_path, capsys):
-    still = ["export", *commanding.BLOCK, "--amplitude", "0.1", "--omega", "6.2832"]
-    refused(capsys, [*still, "--engine", "pymunk", "--out", tmp_path / "scene"], "stays at rest")
-    assert not (tmp_path / "scene").exists()
+def test_what_no_call_made_cannot_be_written_down():
+    pymunk = pytest.importorskip("pymunk")
+    notes = Notes()
+    space = notes.of(pymunk, "pymunk").Space()
+    with pytest.raises(TypeError, match="no value that can be written down"):
+        space.add(pymunk.Body(1.0, 1.0))
+    with pytest.raises(TypeError, match="was not made by a call"):
+        notes.name(own=space.static_body)
 
 
 def test_a_file_that_cannot_be_written_leaves_no_part_of_a_script(tmp_path, monkeypatch):

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from commanding import CASE, python, refused
+from commanding import CASE, python
 
 pytestmark = pytest.mark.processes
 COMPARE = ["compare", *CASE, "--sources", "exact", "--json"]
@@ -77,8 +77,3 @@ def test_settings_of_other_programs_change_nothing(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.count("\n") == 1
     assert plot.read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.parametrize("command", ["sweep", "report"])
-def test_a_folder_of_too_long_a_name_is_refused_by_its_option(command, capsys):
-    refused(capsys, [command, "--out", 256 * "x"], "--out is 'x", "File name too long")

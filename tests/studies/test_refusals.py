@@ -106,6 +106,7 @@ compare CASE --dt 0.01 --p-dt 0.1 --sources rk4 | --dt is 0.01 and --p-dt is 0.1
 advise --engine pybullet --friction 99 | friction is 99.0; it must be from 0
 
 # other scenes, exported or shown
+export BLOCK --amplitude 0.1 --omega 6.2832 --out DIR --engine mujoco | stays at rest
 export CASE --out DIR --engine bullet | --engine is 'bullet', perhaps 'pybullet'; it must be
 export CASE --out DIR --engine mujoco:landing | its preset must have equal steps: default, default
 export CASE --out DIR --engine mujoco --scene frame --load 2 --columns 1 | columns is 1; it must be
@@ -148,6 +149,8 @@ sweep --out /dev/null/results | --out is '/dev/null/results' | folder
 sweep --out ' ' | --out is empty | given
 sweep --out list.csv | --out is | folder
 sweep --out /proc/x | --out is '/proc/x'
+sweep --out LONG | --out is 'x | File name too long
+report --out LONG | --out is 'x | File name too long
 readme --root . | --root
 report --out /dev/null | --out is '/dev/null' | folder
 animate CASE --out film.avi | --out | .gif
@@ -166,7 +169,7 @@ export BLOCK --engine mujoco --out DIR --amplitude 0.4 --omega 1e-9 | --width is
 """A command line, and parts of the line with which it is refused."""
 
 ROWS = [line.split(" | ") for line in REFUSED.splitlines() if line and not line.startswith("#")]
-MEANT = {"BLOCK": BLOCK, "PULSE": PULSE, "CASE": CASE}
+MEANT = {"BLOCK": BLOCK, "PULSE": PULSE, "CASE": CASE, "LONG": [256 * "x"]}
 
 
 def words_of(line):
