@@ -2,11 +2,20 @@
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from analytic.checks import LEAST, measurable, within
+from analytic.checks import LEAST, finite, measurable, positive, within
 
 GRAVITY = 9.81
 """g [m/s2] of every block, amplitude and record: rounded, not the standard gravity of 9.80665."""
+
+
+class Side(NamedTuple):
+    """A side of a body: alpha [rad], p [rad/s], and the velocity ratio at impacts that leave it."""
+
+    alpha: float
+    p: float
+    restitution: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,12 +69,20 @@ class RigidBlock(Upright):
         Ratio of the angular velocities after and before an impact, in [0, 1]. The default is
         Housner's value for an ideally inelastic impact, 1 - 3/2 sin(alpha)^2, or 0 where that is
         not positive: such a squat block comes to rest at its first impact.
+    offset : float, optional
+        How far [m] the mass stands to the right of the middle, at half height, less than B/2.
+        alpha, R and p are then those of the side with the smaller alpha, which overturns first, and
+        the restitution is the root of the product of both sides' (`sides` has each).
+    inertia : float, optional
+        Central moment of inertia over mass [m2]; by default that of a homogeneous block, (B^2 +
+        H^2)/12.
 
     Raises
     ------
     ValueError
         If a dimension or gravity is not positive and finite, or the restitution is outside [0, 1];
-        also if a dimension, gravity or alpha is not of a size whose square floating point holds.
+        also if a dimension, gravity or alpha is not of a size whose square floating point holds, if
+        the offset is not below B/2, or a restitution is given for a block of unlike sides.
 
     Examples
     --------
@@ -75,11 +92,67 @@ class RigidBlock(Upright):
     """
 
     restitution: float = None  # type: ignore[assignment]  # a number once it is made
+    offset: float = 0.0
+    inertia: float | None = None
 
     def __post_init__(self) -> None:
+        half = 0.5 * measurable("width", self.width)
+        if not abs(finite("offset", self.offset)) < half:
+            raise ValueError(f"offset is {self.offset!r}; it must be between -{half} and {half}")
+        if self.inertia is not None:
+            positive("inertia", self.inertia)
         Upright.__post_init__(self)
+        if self.restitution is not None and not self.is_even:
+            words = "it must not be given for a block with an offset, which has two"
+            raise ValueError(f"restitution is {self.restitution!r}; {words}")
         usual = housner_restitution(self.alpha)
+        if not self.is_homogeneous:
+            usual = math.sqrt(self._side(1.0).restitution * self._side(-1.0).restitution)
         object.__setattr__(self, "restitution", restitution_or(self.restitution, usual))
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness angle [rad], the smaller one of two; also the critical rotation."""
+        return math.atan2(self.width - 2.0 * abs(self.offset), self.height)
+
+    @property
+    def R(self) -> float:  # noqa: N802
+        """Distance [m] from the corner with the smaller slenderness to the centre of mass."""
+        return 0.5 * math.hypot(self.width - 2.0 * abs(self.offset), self.height)
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter [rad/s] about that corner: sqrt(3g / 4R) of a homogeneous block."""
+        if self.is_homogeneous:
+            return math.sqrt(0.75 * self.gravity / self.R)
+        return self._side(math.copysign(1.0, self.offset)).p
+
+    @property
+    def is_even(self) -> bool:
+        """Whether both sides are alike."""
+        return self.offset == 0.0
+
+    @property
+    def is_homogeneous(self) -> bool:
+        """Whether its mass is spread evenly."""
+        return self.is_even and self.inertia is None
+
+    @property
+    def sides(self) -> tuple[Side, Side]:
+        """The right side, theta > 0, and the left one."""
+        if self.is_even:
+            return (Side(self.alpha, self.p, self.restitution),) * 2
+        return self._side(1.0), self._side(-1.0)
+
+    def _side(self, sign: float) -> Side:
+        """Return a side by the momentum about its corner and, at an impact, about the other one."""
+        here, up = 0.5 * self.width - sign * self.offset, 0.5 * self.height
+        there = self.width - here
+        square = self.inertia or (self.width**2 + self.height**2) / 12.0
+        lever = math.hypot(here, up)
+        p = math.sqrt(self.gravity * lever / (square + lever * lever))
+        kept = (square + up * up - here * there) / (square + up * up + there * there)
+        return Side(math.atan2(here, up), p, max(kept, 0.0))
 
 
 def restitution_or(given: float | None, usual: float) -> float:

@@ -35,7 +35,8 @@ def solve_cases(
     """Solve the cases of `peak_ratios`, which need no more memory than they and the outputs do.
 
     Take is given of each part the cases (5, n): alpha, amplitude, omega/p, half cycles, eta;
-    the constants (5, n) of `Model.constants`; the fields of `End` (8, n); and an array of each type
+    the constants (5, n) of `Model.constants`; outcome, peak, steps, impacts, events, time, y and v
+    as in `End`, but for the peak of both sides (8, n); and an array of each type
     in `outputs` to write to. Whole, these are returned in the broadcast shape. Peaks are looked for
     above a rotation.
     """
@@ -117,11 +118,16 @@ def solve_pulses(
         pulse[0][1], pulse[0][2], pulse[0][3] = over, amplitude, omega
         pulse[1][0] = pulse[1][1] = over
         if abs(over) < math.inf:
-            outcome, peak, steps, impacts, events, tau, y, v = march(
-                law, exactly, pulse, UPRIGHT, above, notes, work
+            outcome, right, left, steps, impacts, events, tau, y, v = march(
+                (law, law), exactly, pulse, UPRIGHT, above, notes, work
             )
-            ends[0, i], ends[1, i], ends[2, i], ends[3, i] = outcome, peak, steps, impacts
-            ends[4, i], ends[5, i], ends[6, i], ends[7, i] = events, tau, y, v
+            ends[0, i], ends[1, i], ends[2, i], ends[3, i] = (
+                outcome,
+                max(right, left),
+                steps,
+                impacts,
+            )
+            ends[3, i], ends[4, i], ends[5, i], ends[6, i], ends[7, i] = impacts, events, tau, y, v
     return ends
 
 

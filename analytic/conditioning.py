@@ -110,7 +110,7 @@ def scaled(
 ) -> Callable[[float, float], tuple[float, Outcome]]:
     """Return what solves one response with its motion and eta multiplied.
 
-    Given both factors, it returns the largest rotation [rad] and the outcome; eta stays at most 1.
+    Given both factors, it returns the peak over alpha and the outcome; eta stays at most 1.
     It writes nothing else down and may be called from several threads.
     """
     posed = pose(block, motion, model, start)
@@ -123,10 +123,12 @@ def scaled(
         if broken:
             return math.nan, Outcome.FAILED
         harder = moving * np.array([1.0, 1.0, stronger, 1.0, 1.0, stronger, stronger])
-        moved = posed.law._replace(eta=min(livelier * posed.law.eta, 1.0))
+        right, left = (
+            law._replace(eta=min(livelier * law.eta, max(law.eta, 1.0))) for law in posed.laws
+        )
         march = MARCH.few(1, steps)
-        found, peak, *_ = march(moved, exactly, harder, posed.start, 0.0, notes, workspace())
-        return peak, OUTCOMES[found]
+        found, *peaks = march((right, left), exactly, harder, posed.start, 0.0, notes, workspace())
+        return max(peaks[0] / right.alpha, peaks[1] / left.alpha), OUTCOMES[found]
 
     return solve
 

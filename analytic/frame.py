@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from analytic.block import RigidBlock, Upright, restitution_or
+from analytic.block import RigidBlock, Side, Upright, restitution_or
 from analytic.checks import finite, measurable
 
 MOST_COLUMNS = 100
@@ -70,6 +70,11 @@ class RockingFrame(Upright):
         """Frequency parameter [rad/s]: sqrt(3g/4R (1 + 2 gamma)/(1 + 3 gamma))."""
         growth = (1.0 + 3.0 * self.load) / (1.0 + 2.0 * self.load)
         return math.sqrt(0.75 * self.gravity / (self.R * growth))
+
+    @property
+    def sides(self) -> tuple[Side, Side]:
+        """Both sides, which are alike."""
+        return (Side(self.alpha, self.p, self.restitution),) * 2
 
 
 Rocker = RigidBlock | RockingFrame

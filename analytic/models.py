@@ -3,13 +3,14 @@
 With the rotation folded to one side, y = s theta, s = sign(theta), time in units of 1/p and the
 ground acceleration a in units of g, the exact equation of motion is
 
-    y'' = -[sin(alpha - y) + s a cos(alpha - y)]                    (paper, equations 1 and 2)
+    y'' = -k^2 [sin(alpha - y) + s a cos(alpha - y)]                (paper, equations 1 and 2)
 
 and each linear model is
 
     y'' = -k^2 [c - y + s q a]
 
-with its frequency k, saddle c and forcing factor q. A block at rest lifts off when abs(a) exceeds
+with its frequency k, saddle c and forcing factor q; k is 1 in the exact one, unless the mass stands
+off the middle and p is that of the other side. A block at rest lifts off when abs(a) exceeds
 the onset, which is c/q for the linear models. They are derived in EQUATIONS.md,
 "From (1) and (2)".
 """
@@ -19,7 +20,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.kernels.law import FloatArray, Law
+from analytic.frame import Rocker
+from analytic.kernels.law import FloatArray, Law, Laws
 
 
 def _one(alpha: FloatArray) -> FloatArray:
@@ -56,10 +58,18 @@ class Model:
         k, saddle, factor = self.frequency(alpha), self.saddle(alpha), self.forcing(alpha)
         return k, saddle, factor, alpha, self.onset(alpha)
 
-    def law(self, alpha: float, eta: float) -> Law:
-        """Return the model at one slenderness alpha [rad] and velocity ratio eta."""
+    def laws(self, block: Rocker) -> Laws:
+        """Return the model of a block on its right and on its left side."""
+        right, left = (self.law(s.alpha, s.restitution, s.p / block.p) for s in block.sides)
+        return right, left
+
+    def law(self, alpha: float, eta: float, faster: float = 1.0) -> Law:
+        """Return the model at a slenderness alpha [rad] and velocity ratio eta.
+
+        A side of a block may have a p that is larger than the block's by a factor (`faster`).
+        """
         k, saddle, factor, _, onset = map(float, self.constants(np.array(alpha)))
-        return Law(self.linear, k, saddle, factor, alpha, onset, eta)
+        return Law(self.linear, faster * k, saddle, factor, alpha, onset, eta)
 
 
 EXACT = Model(name="exact", title="Exact", linear=False, saddle=_same)

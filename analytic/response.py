@@ -80,6 +80,8 @@ class Response:
     peak_ratio : float
         Largest abs(theta)/alpha; inf when overturned, 0 at rest or slid, nan when failed. An engine
         at rest has the angle by which its block leaned in the contact.
+    peak_sides : (float, float)
+        The same of the right side, theta > 0, and of the left one, each over its own alpha.
     crossed : bool
         Whether abs(theta) exceeded alpha at some time; such a block may still survive.
     impacts : tuple of Impact
@@ -108,6 +110,7 @@ class Response:
 
     outcome: Outcome
     peak_ratio: float
+    peak_sides: tuple[float, float] = (float("nan"), float("nan"))
     crossed: bool = False
     impacts: tuple[Impact, ...] = ()
     uplifts: tuple[float, ...] = ()

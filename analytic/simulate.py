@@ -106,15 +106,16 @@ def simulate(
         return slid(block, motion, start, None if duration is None else until, kept)
     tolerance = within("tolerance", tolerance, TOLERANCE, LOOSEST)
     posed = pose(block, motion, model, start, duration, times)
-    law, begin, _, until, _ = posed
-    exactly = accuracy(TOLERANCE if law.linear else tolerance)
+    laws, begin, _, until, _ = posed
+    linear = laws[0].linear
+    exactly = accuracy(TOLERANCE if linear else tolerance)
     moving = posed.then_still(max(until, posed.segments[-1, 1]))
     march = MARCH.few(1, posed.steps)
 
     def solve(notes: Notes) -> Ended:
-        return march(law, exactly, moving, begin, 0.0, notes, workspace())
+        return march(laws, exactly, moving, begin, 0.0, notes, workspace())
 
-    watched = isinstance(block, RigidBlock) and not law.linear
+    watched = isinstance(block, RigidBlock) and block.is_even and not linear
     return as_response(block, posed, solve, times is not None, watched)
 
 
@@ -140,6 +141,7 @@ def as_response(
     wall_s = time.perf_counter() - began
 
     outcome = OUTCOMES[end.outcome]
+    sides = end.right / posed.laws[0].alpha, end.left / posed.laws[1].alpha
     if outcome is Outcome.FAILED:
         reason, message = FAILURES[end.outcome]
         return Response.failure(message, reason=reason, steps=end.steps, wall_s=wall_s)
@@ -148,8 +150,9 @@ def as_response(
     history = History(sampled[:seen], samples[0, :seen], samples[1, :seen] * block.p)
     return Response(
         outcome=outcome,
-        peak_ratio=math.inf if outcome is Outcome.OVERTURNED else end.peak / block.alpha,
-        crossed=outcome is Outcome.OVERTURNED or end.peak > block.alpha,
+        peak_ratio=math.inf if outcome is Outcome.OVERTURNED else max(sides),
+        peak_sides=sides,
+        crossed=outcome is Outcome.OVERTURNED or max(sides) > 1.0,
         impacts=tuple(
             Impact(t / block.p, before * block.p, after * block.p)
             for kind, t, before, after in events

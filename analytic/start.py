@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from analytic.checks import check_tilt, finite, start_of
 from analytic.frame import Rocker
-from analytic.kernels.law import FloatArray, Law, Start
+from analytic.kernels.law import FloatArray, Laws, Start, law_of
 from analytic.kernels.rest import strongest_between
 from analytic.models import Model, find_model
 from analytic.motion import Motion
@@ -24,12 +24,12 @@ LEAST_LOSS = 0.02
 class Posed(NamedTuple):
     """A response to be solved.
 
-    law and start are as the kernels take them; segments (m, 7) are those of the motion, in units of
-    1/p and g, and not finite where they overflow; until [1/p] is the end of what is followed, and
+    laws and start are as the kernels take them; segments (m, 7) are the motion's, in units of 1/p
+    and g, and not finite where they overflow; until [1/p] is the end of what is followed, and
     times [s] are those of the history.
     """
 
-    law: Law
+    laws: Laws
     start: Start
     segments: FloatArray
     until: float
@@ -40,7 +40,8 @@ class Posed(NamedTuple):
         """Some number of steps that the exact solution may take."""
         _, end, _, omega, *_ = self.segments.T
         turns = float(np.sum(omega * np.diff(end, prepend=0.0))) / math.pi
-        bounces = (turns + self.until) / max(1.0 - self.law.eta, LEAST_LOSS)
+        lost = 1.0 - max(law.eta for law in self.laws)
+        bounces = (turns + self.until) / max(lost, LEAST_LOSS)
         return len(self.segments) + bounces
 
     def then_still(self, end: float) -> FloatArray:
@@ -57,13 +58,13 @@ def pose(
     times: ArrayLike | None = None,
 ) -> Posed:
     """Return a response to be solved; the arguments, and their errors, are those of `simulate`."""
-    law = find_model(model).law(block.alpha, block.restitution)
+    laws = find_model(model).laws(block)
     until, sampled = check_window(motion, duration, times)
-    begin = folded(block, law, motion, start, sampled)
+    begin = folded(block, laws, motion, start, sampled)
     p, g = np.float64(block.p), np.float64(block.gravity)
     with np.errstate(all="ignore"):
         units = np.array([p, p, 1.0 / g, 1.0 / p, 1.0, 1.0 / g, 1.0 / (g * p)])
-        return Posed(law, begin, motion.segments() * units, until * block.p, sampled)
+        return Posed(laws, begin, motion.segments() * units, until * block.p, sampled)
 
 
 def strongest(motion: Motion) -> float:
@@ -72,7 +73,7 @@ def strongest(motion: Motion) -> float:
 
 
 def folded(
-    block: Rocker, law: Law, motion: Motion, start: tuple[float, float], times: FloatArray
+    block: Rocker, laws: Laws, motion: Motion, start: tuple[float, float], times: FloatArray
 ) -> Start:
     """Return a start folded to one side, in units of 1/p; the rest is for the errors.
 
@@ -80,7 +81,7 @@ def folded(
     no time is before the start.
     """
     theta, rate = start_of(start, least=LEAST_TILT * block.alpha)
-    check_tilt(theta, rate, law.saddle, lambda: strongest(motion) == 0.0)
+    check_tilt(theta, rate, law_of(laws, theta).saddle, lambda: strongest(motion) == 0.0)
     leaning = theta if theta != 0.0 else rate
     side = math.copysign(1.0, leaning) if leaning != 0.0 else 0.0
     if side != 0.0 and len(times) and times[0] < 0.0:

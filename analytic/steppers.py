@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
+from analytic.block import RigidBlock
 from analytic.checks import positive
 from analytic.frame import Rocker
-from analytic.kernels.closed_form import free_peak
+from analytic.kernels.closed_form import free_peaks
 from analytic.kernels.excursions import (
     AT_REST,
     BROKEN,
@@ -30,9 +31,11 @@ from analytic.kernels.law import (
     UPLIFT,
     FloatArray,
     Law,
+    Laws,
     Notes,
     Start,
     State,
+    law_of,
     note,
     sample_still,
 )
@@ -109,6 +112,8 @@ def integrate(
         raise ValueError(f"method is {method!r}; it must be one of {', '.join(METHODS)}")
     step = positive("step", step)
     event_tolerance = positive("event_tolerance", event_tolerance)
+    if isinstance(block, RigidBlock) and not block.is_even:
+        raise ValueError(f"offset is {block.offset!r}; it must be 0 for a fixed step")
     posed = pose(block, motion, model, start, duration, times)
     solver = Solver(method == "rk4", step, event_tolerance)
     ended = float(posed.segments[-1, 1])
@@ -117,7 +122,7 @@ def integrate(
     tread = TREAD.few(1, posed.until / step / SOME)
 
     def solve(notes: Notes) -> Ended:
-        return tread(posed.law, moving, posed.start, followed, notes, solver)
+        return tread(posed.laws, moving, posed.start, followed, notes, solver)
 
     return as_response(block, posed, solve, times is not None, watched=False)
 
@@ -166,7 +171,7 @@ def average_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic
     if law.linear:
         stiffness = law.k * law.k
     else:
-        stiffness = math.cos(law.alpha - y) - side * a0 * math.sin(law.alpha - y)
+        stiffness = law.k * law.k * (math.cos(law.alpha - y) - side * a0 * math.sin(law.alpha - y))
     tangent = 1.0 - 0.25 * h * h * stiffness
     known = y + h * v + 0.25 * h * h * before
     end = known + 0.25 * h * h * before
@@ -231,20 +236,20 @@ def verdict(law: Law, path: Cubic, free: bool) -> int:
 
 
 def next_side(
-    law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float, tolerance: float
+    laws: Laws, segments: FloatArray, j: int, tau: float, side: float, v: float, tolerance: float
 ) -> tuple[float, float]:
     """Return what `after_impact` does, but 0 for what stays below the tolerance, too.
 
     It cannot be told from rest.
     """
-    onward, wait = after_impact(law, segments, j, tau, side, v)
-    pull = -acceleration(law, side, ground(segments, j, tau), 0.0)
+    onward, wait = after_impact(laws, segments, j, tau, side, v)
+    pull = -acceleration(law_of(laws, side), side, ground(segments, j, tau), 0.0)
     unseen = wait < math.inf and 0.5 * v * v < tolerance * pull
     return 0.0 if unseen else onward, wait
 
 
 def tread(
-    law: Law, moving: FloatArray, start: Start, followed: bool, notes: Notes, solver: Solver
+    laws: Laws, moving: FloatArray, start: Start, followed: bool, notes: Notes, solver: Solver
 ) -> Ended:
     """Follow one response with a fixed step; arguments as for `excursions.march`.
 
@@ -253,51 +258,54 @@ def tread(
     ended = moving[-1][0]
     last = moving[-1][1] if followed else ended
     side, y, v = start
-    tau, peak, h = 0.0, y, solver.step
+    tau, right, left, h = 0.0, y if side > 0.0 else 0.0, y if side < 0.0 else 0.0, solver.step
     j = steps = impacts = events = n = 0
     while steps < MAX_STEPS:
         if side == 0.0:
-            j, rise, side, _ = next_uplift(moving, j, tau, law.onset)
+            j, rise, side, _ = next_uplift(moving, j, tau, laws)
             n = sample_still(notes, min(rise, last), n, 0.0, 0.0)
             if side == 0.0:
                 outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
-                return outcome, peak, steps, impacts, events, last, 0.0, 0.0
+                return outcome, right, left, steps, impacts, events, last, 0.0, 0.0
             tau, h = rise, solver.step
             events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
-        j = segment_at(moving, j, tau)
+        j, law = segment_at(moving, j, tau), law_of(laws, side)
         if followed and tau >= last:
-            ahead = free_peak(law, y, v)
-            outcome = OVERTURNED if ahead == math.inf else ROCKED
-            return outcome, max(peak, ahead), steps, impacts, events, tau, y, v
+            ahead = free_peaks(laws, side, y, v)
+            right, left = max(right, ahead[0]), max(left, ahead[1])
+            outcome = OVERTURNED if max(right, left) == math.inf else ROCKED
+            return outcome, right, left, steps, impacts, events, tau, y, v
         steps += 1
         segment, begin = moving[j], State(side, tau, 0, y, v)
         landed = tau + h >= segment[1]
         length = segment[1] - tau if landed else h
         path = take_step(law, segment, begin, length, solver.rk4)
         if not (abs(path.end) + abs(path.rate) < math.inf and length > tau * VANISHING):
-            return BROKEN, peak, steps, impacts, events, tau, y, v
+            return BROKEN, right, left, steps, impacts, events, tau, y, v
         if path.end < -solver.tolerance and length > 1e-15:
             h = FRACTION * length
             continue
 
-        peak = max(peak, turning_value(path) if turns(path) else path.end, path.end)
+        peak = max(turning_value(path) if turns(path) else path.end, path.end)
+        right = max(right, peak) if side > 0.0 else right
+        left = max(left, peak) if side < 0.0 else left
         n = sample_cubic(path, begin, notes, n)
         tau = segment[1] if landed else tau + length
         y, v = path.end, path.rate
         found = verdict(law, path, not followed and tau > ended)
         if found != UNDECIDED:
-            return found, peak, steps, impacts, events, tau, y, v
+            return found, right, left, steps, impacts, events, tau, y, v
         h = solver.step if v > 0.0 else h
         if y <= solver.tolerance and v < 0.0:
             impacts += 1
             events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
             j = segment_at(moving, j, tau)
             turned, y, v, h = -side, 0.0, -law.eta * v, solver.step
-            side, wait = next_side(law, moving, j, tau, turned, v, solver.tolerance)
+            side, wait = next_side(laws, moving, j, tau, turned, v, solver.tolerance)
             if side == 0.0:
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
-    return TOO_LONG, peak, steps, impacts, events, tau, y, v
+    return TOO_LONG, right, left, steps, impacts, events, tau, y, v
 
 
 TREAD = Kernel(tread)

@@ -145,6 +145,8 @@ def _standing(system: Any, density: float, depth: float | None, start: Start, ho
 
 def one_block(system: Upright, density: float, depth: float | None, start: Start) -> Layout:
     """Return one block on the base."""
+    if isinstance(system, RigidBlock) and not system.is_homogeneous:
+        raise ValueError(f"system is {system!r}; it must be a homogeneous block")
     block = _standing(system, density, depth, start, 0.0)
     return Layout((block,), (Contact(0, LOWER, BASE),), 1)
 

@@ -6,7 +6,7 @@ the energy at y = 0 is multiplied by eta^2 at each impact.
 
 import math
 
-from analytic.kernels.law import FloatArray, Law, State
+from analytic.kernels.law import FloatArray, Law, Laws, State, law_of
 
 SERIES_BELOW = 1.0
 """Below this argument the two differences of functions are summed from their series."""
@@ -80,11 +80,11 @@ def work_to(law: Law, y: float) -> float:
     """Return half the squared velocity [p^2] that a free block loses between rotations 0 and y.
 
     The integral of -y'' without a ground acceleration: k^2 y (2c - y)/2 of a linear model, and
-    cos(alpha - y) - cos(alpha) of the exact one, as a product.
+    k^2 [cos(alpha - y) - cos(alpha)] of the exact one, as a product.
     """
     if law.linear:
         return 0.5 * law.k * law.k * y * (2.0 * law.saddle - y)
-    return 2.0 * math.sin(law.alpha - 0.5 * y) * math.sin(0.5 * y)
+    return 2.0 * law.k * law.k * math.sin(law.alpha - 0.5 * y) * math.sin(0.5 * y)
 
 
 def turning_rotation(law: Law, work: float) -> float:
@@ -95,25 +95,29 @@ def turning_rotation(law: Law, work: float) -> float:
     if law.linear:
         scaled = 2.0 * work / (law.k * law.k)
         return scaled / (law.saddle + math.sqrt(law.saddle * law.saddle - scaled))
-    y = law.alpha - 2.0 * math.asin(math.sqrt(0.5 * (barrier - work)))
+    stiffness = law.k * law.k
+    y = law.alpha - 2.0 * math.asin(math.sqrt(0.5 * (barrier - work) / stiffness))
     # the difference of two angles loses digits when y is small, where Newton's method is safe
     if y < 0.5 * law.alpha:
         for _ in range(3):
-            y -= (work_to(law, y) - work) / math.sin(law.alpha - y)
+            y -= (work_to(law, y) - work) / (stiffness * math.sin(law.alpha - y))
     return y
 
 
-def free_peak(law: Law, y: float, v: float) -> float:
-    """Return the largest rotation still to come of a free block, inf when it overturns.
+def free_peaks(laws: Laws, side: float, y: float, v: float) -> tuple[float, float]:
+    """Return the largest rotations still to come of a free block, right and left; inf: a fall.
 
-    One that moves inward passes one impact.
+    They are those of its next two swings: from a swing to the next one on the same side no impact
+    adds energy. A block that moves inward passes an impact before.
     """
-    if is_lost(law, y, v):
-        return math.inf
-    work = 0.5 * v * v + work_to(law, y)
+    law = law_of(laws, side)
+    work = math.inf if is_lost(law, y, v) else 0.5 * v * v + work_to(law, y)
     if v < 0.0:
-        work *= law.eta * law.eta
-    return turning_rotation(law, work)
+        work, side = work * law.eta * law.eta, -side
+    law, other = law_of(laws, side), law_of(laws, -side)
+    here = turning_rotation(law, work)
+    there = 0.0 if here == math.inf else turning_rotation(other, work * law.eta * law.eta)
+    return (there, here) if side < 0.0 else (here, there)
 
 
 def is_lost(law: Law, y: float, v: float) -> bool:

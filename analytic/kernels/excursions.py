@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from analytic.kernels.closed_form import free_peak, linear_state
+from analytic.kernels.closed_form import free_peaks, linear_state
 from analytic.kernels.forces import forget_fall, watch_free, watch_rest, watch_step, watch_train
 from analytic.kernels.forms import Kernel
 from analytic.kernels.law import (
@@ -18,9 +18,11 @@ from analytic.kernels.law import (
     UPLIFT,
     FloatArray,
     Law,
+    Laws,
     Notes,
     Start,
     State,
+    law_of,
     note,
     sample_still,
 )
@@ -62,7 +64,7 @@ LINEAR_STEP = 2.5
 """Linear step in units of the shortest time scale; its series is exact to 1e-16."""
 
 
-Ended: TypeAlias = tuple[int, float, int, int, int, float, float, float]
+Ended: TypeAlias = tuple[int, float, float, int, int, int, float, float, float]
 """The fields of an `End`, as compiled code returns them: to make a named tuple it would call
 Python, where an interruption may end the call; compiled code does not see that, and crashes."""
 
@@ -70,11 +72,13 @@ Python, where an interruption may end the call; compiled code does not see that,
 class End(NamedTuple):
     """How a march ended; `events` may exceed the capacity of the log.
 
+    right and left are the largest rotations on either side.
     time, y and v are those of the last state, before any free rocking that is not followed.
     """
 
     outcome: int
-    peak: float
+    right: float
+    left: float
     steps: int
     impacts: int
     events: int
@@ -258,7 +262,7 @@ def sample_step(
 
 
 def march(
-    law: Law,
+    laws: Laws,
     accuracy: Accuracy,
     moving: FloatArray,
     start: Start,
@@ -275,51 +279,56 @@ def march(
     """
     last, limits = moving[-1][1], notes.limits
     side, y, v = start
-    tau, peak, lead = 0.0, max(y, above), 1 if y == 0.0 else 0
+    tau, lead = 0.0, 1 if y == 0.0 else 0
+    right = max(y, above) if side > 0.0 else above
+    left = max(y, above) if side < 0.0 else above
     j = steps = impacts = events = n = 0
     while steps < MAX_STEPS:
         if side == 0.0:
             resting = j
-            j, rise, side, lead = next_uplift(moving, j, tau, law.onset)
+            j, rise, side, lead = next_uplift(moving, j, tau, laws)
             n = sample_still(notes, min(rise, last), n, 0.0, 0.0)
             watch_rest(limits, moving, resting, tau, rise)
             if side == 0.0:
                 outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
-                return outcome, peak, steps, impacts, events, last, 0.0, 0.0
+                return outcome, right, left, steps, impacts, events, last, 0.0, 0.0
             tau = rise
             events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
-        j = segment_at(moving, j, tau)
+        j, law = segment_at(moving, j, tau), law_of(laws, side)
         if tau >= last:
             sample_still(notes, last, n, side * y, side * v)  # of a motion without length
-            ahead = free_peak(law, y, v)
+            ahead = free_peaks(laws, side, y, v)
             watch_free(limits, law, y, v)
-            outcome = OVERTURNED if ahead == math.inf else ROCKED
-            return outcome, max(peak, ahead), steps, impacts, events, last, y, v
+            right, left = max(right, ahead[0]), max(left, ahead[1])
+            outcome = OVERTURNED if max(right, left) == math.inf else ROCKED
+            return outcome, right, left, steps, impacts, events, last, y, v
         steps += 1
         segment, begin = moving[j], State(side, tau, lead, y, v)
+        peak = left if side < 0.0 else right
         if accuracy.order == 0:
             step = leap(law, segment, begin, peak)
         else:
             step = take_step(law, accuracy, segment, begin, peak, work)
         if step.kind == LOST:
-            return BROKEN, peak, steps, impacts, events, tau, y, v
+            return BROKEN, right, left, steps, impacts, events, tau, y, v
         n = sample_step(law, segment, begin, work[4], accuracy.order, step, notes, n)
         watch_step(limits, law, accuracy.order, step.h, step.x, work, step.y)
-        tau, y, v, peak, lead = step.tau, step.y, step.v, step.peak, 0
+        tau, y, v, lead = step.tau, step.y, step.v, 0
+        right, left = (right, step.peak) if side < 0.0 else (step.peak, left)
         if step.kind == FALLEN:
             forget_fall(limits)
-            return OVERTURNED, peak, steps, impacts, events, tau, y, v
+            return OVERTURNED, right, left, steps, impacts, events, tau, y, v
         if step.kind == HIT:
             impacts += 1
             events = note(notes.log, events, IMPACT, tau, side * v, side * law.eta * v)
             turned, y, v = -side, 0.0, -law.eta * v
-            side, wait = after_impact(law, moving, j, tau, turned, v)
+            side, wait = after_impact(laws, moving, j, tau, turned, v)
             lead = 1 if v != 0.0 else 2
             if side == 0.0:
                 watch_train(limits, law, turned, ground(moving, j, tau), v)
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
-    return TOO_LONG, peak, steps, impacts, events, tau, y, v
+    return TOO_LONG, right, left, steps, impacts, events, tau, y, v
 
 
 MARCH = Kernel(march)

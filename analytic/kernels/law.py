@@ -4,7 +4,9 @@ In all kernels the rotation is folded to the side s = sign(theta) on which the b
 1, so that y = s theta > 0. With z = alpha - y and the ground acceleration a (EQUATIONS.md,
 "From (1) and (2)"; names as in `analytic.models`),
 
-    y'' = -[sin z + s a cos z],    of a linear model  y'' = -k^2 [c - y + s q a].
+    y'' = -k^2 [sin z + s a cos z],    of a linear model  y'' = -k^2 [c - y + s q a].
+
+Each side has a law of its own; the two are equal unless the mass stands off the middle.
 
 Units are those of p and g: rotations in rad, times (tau, h) in 1/p, the rate v of y in rad p,
 energies ("work") v^2/2 in p^2, accelerations a and f = s a in g. A segment, shape (7,), is a row
@@ -18,7 +20,7 @@ numbers or more, are the series of y, f, sin z and cos z, then d; from 5 on they
 MAX_DEPTH + 3 rows or more suffice for any `work` that is not a step's.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,11 +32,11 @@ UPLIFT, IMPACT, RESTED = 0.0, 1.0, 2.0
 
 
 class Law(NamedTuple):
-    """A model at one slenderness.
+    """A model of a block on one of its sides.
 
     linear, k, saddle and factor are those of `analytic.models`, factor being q; alpha is the
-    slenderness [rad], onset the acceleration [g] that lifts the block, eta the velocity ratio at
-    impacts.
+    slenderness [rad], onset the acceleration [g] that lifts the block onto this side, eta the
+    velocity ratio at the impact with which it leaves it.
     """
 
     linear: bool
@@ -44,6 +46,15 @@ class Law(NamedTuple):
     alpha: float
     onset: float
     eta: float
+
+
+Laws: TypeAlias = tuple[Law, Law]
+"""Those of the right side, theta > 0, and of the left one."""
+
+
+def law_of(laws: Laws, side: float) -> Law:
+    """Return the law of a side; of a block at rest, the right one's."""
+    return laws[1] if side < 0.0 else laws[0]
 
 
 class Start(NamedTuple):

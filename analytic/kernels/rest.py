@@ -5,7 +5,7 @@ Symbols and units are those of `analytic.kernels.law`.
 
 import math
 
-from analytic.kernels.law import FloatArray, Law
+from analytic.kernels.law import FloatArray, Law, Laws, law_of
 
 ANGLE_TOLERANCE = 1e-14
 
@@ -55,32 +55,41 @@ def acceleration(law: Law, side: float, a: float, y: float) -> float:
     """Return y'' [rad p^2] by the equation of motion (EQUATIONS.md, "From (1) and (2)")."""
     if law.linear:
         return -law.k * law.k * (law.saddle - y + side * law.factor * a)
-    return -(math.sin(law.alpha - y) + side * a * math.cos(law.alpha - y))
+    return -law.k * law.k * (math.sin(law.alpha - y) + side * a * math.cos(law.alpha - y))
 
 
-def sine_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, bool]:
-    """Return when abs(amplitude sin) first exceeds the onset from tau on, and whether smoothly."""
+def sine_uplift(segment: FloatArray, tau: float, laws: Laws) -> tuple[float, bool]:
+    """Return when abs(amplitude sin) first exceeds the onset from tau on, and whether smoothly.
+
+    The block lifts onto its left side in one half cycle, and onto its right one in the next.
+    """
     start, _, amplitude, omega, phase, _, _ = segment
-    if abs(amplitude) <= onset:
-        return math.inf, True
     angle = omega * (tau - start) + phase
-    level = math.asin(onset / abs(amplitude))
-    within = angle - math.pi * math.floor(angle / math.pi)
-    if level + ANGLE_TOLERANCE < within < math.pi - level - ANGLE_TOLERANCE:
-        return tau, False
-    wait = level - within if within <= level + ANGLE_TOLERANCE else math.pi + level - within
-    return tau + max(wait, 0.0) / omega, True
+    begun = math.floor(angle / math.pi)
+    within = angle - math.pi * begun
+    for ahead in range(3):
+        onset = law_of(laws, -amplitude if (begun + ahead) % 2 == 0 else amplitude).onset
+        if abs(amplitude) <= onset:
+            continue
+        level = math.asin(onset / abs(amplitude))
+        if ahead == 0 and level + ANGLE_TOLERANCE < within < math.pi - level - ANGLE_TOLERANCE:
+            return tau, False
+        if ahead > 0 or within <= level + ANGLE_TOLERANCE:
+            return tau + max(ahead * math.pi + level - within, 0.0) / omega, True
+    return math.inf, True
 
 
-def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, bool]:
+def ramp_uplift(segment: FloatArray, tau: float, laws: Laws) -> tuple[float, bool]:
     """Return when abs(offset + slope t) first exceeds the onset from tau on, whether smoothly.
 
     Two excesses count as rounding: one of a part EQUAL of the onset or less, and one that lasts for
     a part MOMENT of the segment or less. The latter falls at the segment's begin, or rises at its
-    end, where the next segment tells.
+    end, where the next segment tells. Of two onsets, the ground counts from midway between them.
     """
     start, end, _, _, _, offset, rate = segment
-    now, moment = offset + rate * (tau - start), MOMENT * (end - start)
+    onset = 0.5 * (laws[1].onset + laws[0].onset)
+    midway = 0.5 * (laws[1].onset - laws[0].onset)
+    now, moment = offset + rate * (tau - start) - midway, MOMENT * (end - start)
     excess = abs(now) - onset
     falls = now * rate < 0.0
     if excess > EQUAL * onset and not (falls and excess <= moment * abs(rate)):
@@ -92,9 +101,9 @@ def ramp_uplift(segment: FloatArray, tau: float, onset: float) -> tuple[float, b
 
 
 def next_uplift(
-    segments: FloatArray, j: int, tau: float, onset: float
+    segments: FloatArray, j: int, tau: float, laws: Laws
 ) -> tuple[int, float, float, int]:
-    """Find the next uplift of a block at rest, where abs(a) first exceeds the onset.
+    """Find the next uplift of a block at rest, where abs(a) first exceeds the onset of a side.
 
     Returns its segment, time, side, and lead: 3 where the ground passes through the onset, 2 where
     it is beyond the onset at once. A block that stays at rest has the time inf and the side 0.
@@ -102,34 +111,35 @@ def next_uplift(
     for i in range(j, len(segments)):
         begin = max(tau, segments[i][0])
         if segments[i][2] != 0.0:
-            time, smooth = sine_uplift(segments[i], begin, onset)
+            time, smooth = sine_uplift(segments[i], begin, laws)
         else:
-            time, smooth = ramp_uplift(segments[i], begin, onset)
+            time, smooth = ramp_uplift(segments[i], begin, laws)
         if time < segments[i][1]:
             side = -math.copysign(1.0, ground(segments, i, time))
             return i, time, side, 3 if smooth else 2
     return len(segments), math.inf, 0.0, 0
 
 
-def time_to_rest(law: Law, side: float, v: float, a: float) -> float:
+def time_to_rest(laws: Laws, side: float, v: float, a: float) -> float:
     """Return how long [1/p] a block leaving the base goes on to rock; inf if it does not rest.
 
     The excursions last 2 v/r with the restoring accelerations r of the two sides in turn, and
     each impact multiplies the velocity by eta: a geometric series.
     """
-    here = -acceleration(law, side, a, 0.0)
-    there = -acceleration(law, -side, a, 0.0)
+    this, other = law_of(laws, side), law_of(laws, -side)
+    here = -acceleration(this, side, a, 0.0)
+    there = -acceleration(other, -side, a, 0.0)
     if here <= 0.0 or there <= 0.0:
         return math.inf
     if v == 0.0:
         return 0.0
-    if law.eta >= 1.0:
+    if this.eta * other.eta >= 1.0:
         return math.inf
-    return 2.0 * v * (1.0 / here + law.eta / there) / (1.0 - law.eta * law.eta)
+    return 2.0 * v * (1.0 / here + this.eta / there) / (1.0 - this.eta * other.eta)
 
 
 def after_impact(
-    law: Law, segments: FloatArray, j: int, tau: float, side: float, v: float
+    laws: Laws, segments: FloatArray, j: int, tau: float, side: float, v: float
 ) -> tuple[float, float]:
     """Return the side of a block that leaves its base at v after an impact, and `time_to_rest`.
 
@@ -138,11 +148,11 @@ def after_impact(
     segment j.
     """
     now = ground(segments, j, tau)
-    wait = time_to_rest(law, side, v, now)
+    wait = time_to_rest(laws, side, v, now)
     later = ground(segments, j, tau + wait) if wait < math.inf else now
-    here = acceleration(law, side, now, 0.0)
-    there = acceleration(law, -side, now, 0.0)
-    change = abs(acceleration(law, side, later, 0.0) - here)
+    here = acceleration(law_of(laws, side), side, now, 0.0)
+    there = acceleration(law_of(laws, -side), -side, now, 0.0)
+    change = abs(acceleration(law_of(laws, side), side, later, 0.0) - here)
     if wait < ZENO and change <= ZENO * min(abs(here), abs(there)):
         return 0.0, wait
     # where no velocity is left the ground lifts the block again at once

@@ -50,7 +50,8 @@ def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: 
 
 
 def expand_exact(law: Law, order: int, work: FloatArray) -> None:
-    """Extend the series of y by the exact equation, y'' = -[sin z + f cos z], z = alpha - y."""
+    """Extend the series of y by the exact equation, y'' = -k^2 [sin z + f cos z]."""
+    stiffness = law.k * law.k
     y, f, sine, cosine, rate = work[0], work[1], work[2], work[3], work[4]
     sine[0] = math.sin(law.alpha - y[0])
     cosine[0] = math.cos(law.alpha - y[0])
@@ -67,7 +68,8 @@ def expand_exact(law: Law, order: int, work: FloatArray) -> None:
             s += rate[1] * cosine[i]
             c += rate[1] * sine[i]
             forced += f[i] * cosine[0]
-            y[i + 2] = -(sine[i] + (forced + f[0] * cosine[i])) * (1.0 / (i + 1)) * (1.0 / (i + 2))
+            pull = sine[i] + (forced + f[0] * cosine[i])
+            y[i + 2] = -stiffness * pull * (1.0 / (i + 1)) * (1.0 / (i + 2))
         sine[i + 1] = -(s + rate[i + 1] * cosine[0]) * (1.0 / (i + 1))
         cosine[i + 1] = (c + rate[i + 1] * sine[0]) * (1.0 / (i + 1))
 

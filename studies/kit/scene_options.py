@@ -192,16 +192,21 @@ class Standing:
         Number of columns of a frame, from 2 to 100.
     load
         Mass of a frame's beam over the mass of all columns.
+    offset
+        Distance [m] of a block's mass to the right of the middle; only models take it.
     """
 
     scene: Annotated[SceneName, one_of(SceneName)] = "block"
     columns: Count | None = None
     load: Positive | None = None
+    offset: Finite | None = None
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system that the options mean; of --friction only what slides knows."""
         if self.scene != "frame":
             refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
+        if self.scene != "block":
+            refuse_given({"offset": self.offset}, "only with --scene block")
         block = block_of(width, height)
         sizes = {"width": width, "height": height}
         with as_bad_input():
@@ -213,7 +218,7 @@ class Standing:
                 words = "a block that slides requires one below B/H"
                 (friction,) = required(words, friction=friction)
                 return SlidingBlock(**sizes, friction=friction)
-        return block
+            return RigidBlock(**sizes, offset=self.offset) if self.offset else block
 
 
 def window_of(

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import MODELS, integrate, simulate
+from analytic.block import RigidBlock
 from analytic.motion import Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
@@ -61,6 +62,8 @@ class Source:
         """Refuse what it cannot be asked, before it is, by a TypeError or ValueError."""
         if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
+        if isinstance(block, RigidBlock) and not block.is_even and self.kind != "model":
+            raise ValueError(f"{self.name} has no block with an offset; it is for models alone")
         if getattr(self.call, "func", None) is run_engine:
             self.declared.use(scene_of(block, motion, self.preset, **options))
             return

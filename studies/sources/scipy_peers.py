@@ -84,7 +84,7 @@ class _March:
     message: str = FAILURES[BROKEN].message
 
     def run(self) -> Outcome:
-        law, (side, y, v), segments, *_ = self.posed
+        laws, (side, y, v), segments, *_ = self.posed
         self.peak, self.end, self.samples = y, math.inf, np.zeros((2, self.posed.times.size))
         if not np.all(np.isfinite(segments)):
             return Outcome.FAILED
@@ -92,7 +92,7 @@ class _March:
         for _ in range(MOST_EXCURSIONS + len(segments)):
             j = segment_at(segments, j, tau)
             if side == 0.0:
-                j, tau, side, _ = next_uplift(segments, j, tau, law.onset)
+                j, tau, side, _ = next_uplift(segments, j, tau, laws)
             if side == 0.0:
                 return Outcome.ROCKED if started or self.peak > 0.0 else Outcome.AT_REST
             path = self._stretch(j, tau, y, v, side)
@@ -116,7 +116,7 @@ class _March:
         turn or to fall, some -ln(1e-16) = 37. The first step out of an impact is a tenth at most of
         the excursion, 2 v / y'', for an excursion shorter than that step would be stepped over.
         """
-        law, rows = self.posed.law, self.posed.segments[j : j + 1].tolist()
+        law, rows = self.posed.laws[0], self.posed.segments[j : j + 1].tolist()
         end = rows[0][1] if rows else min(self.until, tau + 60.0)
         decides = not rows and self.until == math.inf
 
@@ -145,7 +145,7 @@ class _March:
     def _decided(self, path: Any, tau: float, y: float, v: float) -> Outcome | None:
         """Return the outcome if a stretch has decided it."""
         contact, turns, lying = path.t_events
-        beyond = y > self.posed.law.alpha
+        beyond = y > self.posed.laws[0].alpha
         free = self.until == math.inf and tau >= self.posed.segments[-1, 1]
         if len(lying) or (free and beyond and v >= 0.0):
             return Outcome.OVERTURNED
@@ -156,9 +156,9 @@ class _March:
 
     def _strike(self, j: int, tau: float, v: float, side: float) -> tuple[float, float, float]:
         """Return time, side and velocity after an impact, or at the rest that follows it."""
-        law, segments, after = self.posed.law, self.posed.segments, -self.posed.law.eta * v
+        laws, segments, after = self.posed.laws, self.posed.segments, -self.posed.laws[0].eta * v
         self.impacts.append(Impact(tau / self.p, side * v * self.p, -side * after * self.p))
-        onward, wait = after_impact(law, segments, segment_at(segments, j, tau), tau, -side, after)
+        onward, wait = after_impact(laws, segments, segment_at(segments, j, tau), tau, -side, after)
         return (tau, onward, after) if onward else (tau + wait, 0.0, 0.0)
 
     def history(self) -> History:
