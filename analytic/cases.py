@@ -51,7 +51,8 @@ def solve_cases(
         cases = np.array([column.flat[where] for column in columns], dtype=np.float64)
         if restitution is None:
             # where all are of one slenderness, of one block
-            cases[4] = housner_restitutions(cases[0] if np.ptp(cases[0]) else cases[0, :1])
+            one = cases[0, :1]
+            cases[4] = housner_restitutions(cases[0] if np.any(cases[0] != one) else one)
         check_cases(cases)
         constants = np.stack(declared.constants(cases[0]))
         omega, half_cycles = cases[2], cases[3]
@@ -121,12 +122,7 @@ def solve_pulses(
             outcome, right, left, steps, impacts, events, tau, y, v = march(
                 (law, law), exactly, pulse, UPRIGHT, above, notes, work
             )
-            ends[0, i], ends[1, i], ends[2, i], ends[3, i] = (
-                outcome,
-                max(right, left),
-                steps,
-                impacts,
-            )
+            ends[0, i], ends[1, i], ends[2, i] = outcome, max(right, left), steps
             ends[3, i], ends[4, i], ends[5, i], ends[6, i], ends[7, i] = impacts, events, tau, y, v
     return ends
 

@@ -111,8 +111,10 @@ def free_peaks(laws: Laws, side: float, y: float, v: float) -> tuple[float, floa
     adds energy. A block that moves inward passes an impact before.
     """
     law = law_of(laws, side)
-    work = math.inf if is_lost(law, y, v) else 0.5 * v * v + work_to(law, y)
-    if v < 0.0:
+    work = 0.5 * v * v + work_to(law, y)
+    if is_lost(law, y, v):
+        work = math.inf
+    elif v < 0.0:
         work, side = work * law.eta * law.eta, -side
     law, other = law_of(laws, side), law_of(laws, -side)
     here = turning_rotation(law, work)

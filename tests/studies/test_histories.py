@@ -57,7 +57,7 @@ def test_samples_stand_beside_their_case_and_a_failed_line_has_none():
     found = histories.tabulate(rows)
     assert len(found["figure-2"]) == 3 * 1501
     assert found["findings"]["holds"].isna().all()  # average acceleration was not asked
-    assert "not" in histories.finding(found)
+    assert "No statement" in histories.finding(found)
 
 
 def test_a_claim_needs_its_sources():
