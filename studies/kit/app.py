@@ -56,7 +56,12 @@ def settle_environment() -> None:
     os.environ["COLUMNS"] = str(min(max(shutil.get_terminal_size().columns, 40), 200))
 
 
+ended: list[int] = []
+"""Signals that came: compiled code may lose the exception of one, so a run looks here, too."""
+
+
 def _end(number: int, _: Any) -> None:
+    ended.append(number)
     raise KeyboardInterrupt(number)
 
 

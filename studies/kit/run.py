@@ -18,6 +18,7 @@ from analytic.motion import SinePulse
 from analytic.response import Outcome, Reason, Response
 from engines.run.look import PACKAGE, compile_look
 from studies.cases.refusal import BadInputError
+from studies.kit.app import ended
 from studies.kit.identity import Maker, maker_of
 from studies.kit.jobs import Job, Row, ask, summary, unanswered
 from studies.kit.say import say
@@ -164,6 +165,8 @@ def run(
             if lines and monotonic() - told > TELL_S:
                 told = monotonic()
                 say(f"{len(done)} of {len(jobs)} cases")
+            if ended:
+                raise KeyboardInterrupt(ended[0])
             key = keys[left[number]]
             done[key] = {**labels[left[number]], **row}
             store.add(key, done[key], makers[jobs[left[number]].source])
