@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -14,19 +13,15 @@ from cyclopts import Parameter
 from numpy.typing import NDArray
 from scipy.stats import binomtest, rankdata
 
-from analytic.block import RigidBlock
 from analytic.response import Outcome
 from studies.cases.refusal import BadInputError
-from studies.cases.rocks import MESHES, Sides, read_mesh, read_motion, read_tests
+from studies.cases.rocks import MESHES, read_mesh, read_motion, read_tests
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.study import Figures, Study, Tables
-from studies.measures.margins import MARGIN, measure
+from studies.measures.margins import GRID, block_of, measure
 
-GRID = [Sides(*pair) for pair in product((0.07, 0.09, 0.11, 0.13, 0.15, 0.18, 0.22),
-                                         (0.25, 0.35, 0.5, 0.7))]  # fmt: skip
-"""Blocks that are fitted to what fell."""
-FITTED = {1: Sides(0.09, 0.5), 2: Sides(0.15, 0.25)}
-"""The best of them for each rock, which engines and the search for margins are given."""
+FITTED = {1: (0.09, 0.5), 2: (0.15, 0.25)}
+"""The best block of the grid for each rock, which engines and the search for margins are given."""
 FOLDS, SEED = 5, 0
 EXACT, RULE, AUTHORS = "exact", "rule", "authors"
 MESH = ("exact, both sides of the mesh", "exact, weak side of the mesh")
@@ -57,22 +52,19 @@ def jobs(sources: Sequence[str], _: bool, options: Options) -> list[Job]:
         raise BadInputError(f"--rocks is missing; {words}")
     folder = Path(options.rocks)
     tests = read_tests(folder).to_dict("records")
-    asked = [(0, "grid", sides, EXACT) for sides in GRID]
+    asked = [(0, "grid", GRID[0], EXACT)]
     for rock in MESHES:
         meshes = zip(MESH, read_mesh(folder, rock), strict=True)
         asked += [(rock, name, sides, EXACT) for name, sides in meshes]
-        asked += [(rock, MARGIN, FITTED[rock], EXACT)]
+        asked += [(rock, "margin", FITTED[rock], EXACT)]
         asked += [(rock, name, FITTED[rock], name) for name in sources if name != EXACT]
     found = []
     for test in tests:
         motion = read_motion(folder, test["test"])
         for rock, name, sides, source in asked if motion else ():
-            width, height = (2.0 * sides.radius * way(sides.alpha) for way in (math.sin, math.cos))
-            labels = {**test, "rock": rock, "block": name, **sides._asdict()}
-            block = RigidBlock(width=width, height=height)
-            found.append(
-                Job(labels=labels, case=Question(system=block, motion=motion), source=source)
-            )
+            case = Question(system=block_of(*sides), motion=motion)
+            labels = {**test, "rock": rock, "block": name}
+            found.append(Job(labels=labels, case=case, source=source))
     if not found:
         raise BadInputError(f"--rocks is {options.rocks!r}; it holds no record of a test")
     return found
@@ -86,22 +78,21 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     falls = (rows["outcome"] == Outcome.OVERTURNED.value).astype(float)
     falls = falls.where(rows["outcome"] != Outcome.FAILED.value)
     rows = rows.assign(falls=falls)
-    grid = rows[rows["block"] == "grid"].pivot(
-        index="test", columns=["alpha", "radius"], values="falls"
-    )[GRID]
-    tests = rows.drop_duplicates("test").set_index("test").loc[grid.index]
+    tests = rows[rows["block"] == "grid"].set_index("test")
+    letters = np.array([list(line) for line in tests["grid"]])
+    grid = np.where(letters == "?", np.nan, letters == "f")
     tables, lines, areas = {}, list[Row](), list[Row]()
     for rock in MESHES:
         mine = rows[rows["rock"] == rock]
-        margins = mine[mine["block"] == MARGIN].set_index("test")["margin"]
+        margins = mine[mine["block"] == "margin"].set_index("test")["margin"]
         table = tests[["pga_g", "pgv_m_s"]].assign(margin=margins, fell=tests[f"fell_{rock}"])
         fell = table["fell"].to_numpy() == 1
-        choices = {EXACT: _best_block(grid.to_numpy(), fell), RULE: _best_rule(table, fell)}
+        choices = {EXACT: _best_block(grid, fell), RULE: _best_rule(table, fell)}
         folds = np.random.default_rng(SEED).permutation(len(fell)) % FOLDS
         for name, choose in choices.items():
             table[name] = held_out(choose, folds)
         table[AUTHORS] = tests[f"authors_{rock}"]
-        others = mine[mine["block"] != MARGIN]
+        others = mine[mine["block"] != "margin"]
         table = table.join(others.pivot(index="test", columns="block", values="falls"))
         right = table[table.columns[4:]].eq(table["fell"], axis=0)
         for name, choose in choices.items():
@@ -123,7 +114,7 @@ Choice = Callable[[Bits], tuple[NDArray[np.float64], str]]
 def _best_block(falls: NDArray[np.float64], fell: Bits) -> Choice:
     def choose(known: Bits) -> tuple[NDArray[np.float64], str]:
         best = int((falls[known] == fell[known, None]).sum(axis=0).argmax())
-        return falls[:, best], f"alpha {GRID[best].alpha:g} rad, R {GRID[best].radius:g} m"
+        return falls[:, best], "alpha {:g} rad, R {:g} m".format(*GRID[best])
 
     return choose
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
 from xml.etree import ElementTree
 from zipfile import BadZipFile, ZipFile
 
@@ -31,13 +30,6 @@ DT = 1.0 / 800.0
 FOOT = 5e-3
 """Height [m] above the lowest point of a mesh up to which its points belong to the footprint."""
 CELL = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
-
-
-class Sides(NamedTuple):
-    """A planar block by its slenderness [rad] and half diagonal [m]."""
-
-    alpha: float
-    radius: float
 
 
 def refused(path: Path, why: str) -> BadInputError:
@@ -108,7 +100,7 @@ def read_motion(folder: Path, test: int) -> Record | None:
     return Record(dt=DT, samples=GRAVITY * table[:, 1]).detrended("constant")
 
 
-def read_mesh(folder: Path, rock: int) -> tuple[Sides, Sides]:
+def read_mesh(folder: Path, rock: int) -> list[tuple[float, float]]:
     """Return blocks with the mean of both sides of a mesh, and with its weak side on both.
 
     The sides are those of the footprint, across the edge of it next to the centre of mass, which
@@ -131,7 +123,4 @@ def read_mesh(folder: Path, rock: int) -> tuple[Sides, Sides]:
         raise refused(path, "is no mesh of triangles that stands on a face") from error
     weak, across = float(-edges[:, 2].max()), edges[edges[:, 2].argmax(), :2]
     both = 0.5 * (weak - float((foot @ across).min()))
-    mean, least = (
-        Sides(float(np.arctan2(b, height)), float(np.hypot(b, height))) for b in (both, weak)
-    )
-    return mean, least
+    return [(float(np.arctan2(b, height)), float(np.hypot(b, height))) for b in (both, weak)]
