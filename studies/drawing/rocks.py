@@ -37,7 +37,7 @@ def draw_rocks(
 
 
 def _draw_curve(axes: Axes, score: pd.Series, fell: pd.Series, name: str) -> None:
-    """Draw the part of the falls that is found over the part of the others that is taken for one."""
+    """Draw the part of the falls that is found over that of the others taken for one."""
     levels = np.unique(score)[::-1]
     taken = score.to_numpy()[:, None] >= levels
     ends = [[0.0, *taken[(fell == value).to_numpy()].mean(axis=0)] for value in (0, 1)]
