@@ -16,7 +16,7 @@ from scipy.stats import binomtest, mannwhitneyu
 
 from analytic.response import Outcome
 from studies.cases.refusal import BadInputError
-from studies.cases.rocks import MESHES, read_mesh, read_motion, read_tests
+from studies.cases.rocks import MESHES, TABLE, read_mesh, read_motion, read_tests
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import listed
 from studies.kit.study import Figures, Study, Tables
@@ -54,18 +54,19 @@ def jobs(sources: Sequence[str], _: bool, options: Options) -> list[Job]:
     folder = Path(options.rocks)
     tests = read_tests(folder).to_dict("records")
     asked = [(0, "grid", GRID[0], EXACT)]
-    for rock in MESHES:
-        meshes = zip(MESH, read_mesh(folder, rock), strict=True)
-        asked += [(rock, name, sides, EXACT) for name, sides in meshes]
+    for rock, mesh in MESHES.items():
+        asked += [(rock, *each, EXACT) for each in zip(MESH, read_mesh(folder / mesh), strict=True)]
         asked += [(rock, "margin", FITTED[rock], EXACT)]
         asked += [(rock, name, FITTED[rock], name) for name in sources if name != EXACT]
     found = []
     for test in tests:
-        motion = read_motion(folder, test["test"])
+        path = folder / TABLE / f"Test{test['test']:03d}.txt"
+        motion = read_motion(path) if path.is_file() else None
         for rock, name, sides, source in asked if motion else ():
             case = Question(system=block_of(*sides), motion=motion)
-            labels = {**test, "rock": rock, "block": name}
-            found.append(Job(labels=labels, case=case, source=source))
+            found.append(
+                Job(labels={**test, "rock": rock, "block": name}, case=case, source=source)
+            )
     if not found:
         raise BadInputError(f"--rocks is {options.rocks!r}; it holds no record of a test")
     return found
@@ -93,41 +94,40 @@ def tabulate(rows: pd.DataFrame) -> Tables:
         found = rows[rows["rock"] == rock].pivot(index="test", columns="block")
         fell = tests[f"fell_{rock}"].to_numpy()
         table = strong.assign(margin=found["margin", "margin"], fell=fell)
-        fitted = {}
+        every = pd.DataFrame(index=tests.index)
         for name, (numbers, predicted) in tried.items():
             right = predicted == fell[:, None]
-            table[name], best = math.nan, right.sum(axis=0).argmax()
-            fitted[f"{name}, fitted to all"] = predicted[:, best], numbers[best]
+            best, table[name] = right.sum(axis=0).argmax(), math.nan
+            every[f"{name}, fitted to all: {numbers[best].round(3)}"] = predicted[:, best]
             for fold in range(FOLDS):
                 best = right[folds != fold].sum(axis=0).argmax()
                 table.loc[folds == fold, name] = predicted[folds == fold, best]
         table[AUTHORS] = tests[f"authors_{rock}"]
         table = table.join(found["falls"].drop(columns="margin"))
-        every = table.assign(**{name: answers for name, (answers, _) in fitted.items()})
-        right = every.iloc[:, 4:].eq(fell, axis=0)
-        for name in right:
-            first, second = fitted[name][1] if name in fitted else (math.nan, math.nan)
-            labels = {"rock": rock, "source": name, "first": first, "second": second}
-            lines.append({**labels, **_shares(right, name, fell == 1)})
+        right = table.iloc[:, 4:].join(every).eq(fell, axis=0)
+        lines += [{"rock": rock, "source": name, **_shares(right, name, fell)} for name in right]
         for name, sign in SCORES.items():
-            score, pairs = sign * table[name], int((fell == 1).sum() * (fell == 0).sum())
-            first = mannwhitneyu(score[fell == 1], score[fell == 0]).statistic if pairs else 0
-            areas.append(
-                {"rock": rock, "score": name, "area": first / pairs if pairs else math.nan}
-            )
+            falls, stays = (sign * table.loc[fell == value, name] for value in (1, 0))
+            pairs = len(falls) * len(stays) or math.nan
+            won = mannwhitneyu(falls, stays).statistic if pairs > 0 else math.nan
+            areas.append({"rock": rock, "score": name, "area": won / pairs})
         tables[f"rock-{rock}"] = table.reset_index()
     return {**tables, "shares": pd.DataFrame(lines), "areas": pd.DataFrame(areas)}
 
 
-def _shares(right: pd.DataFrame, name: str, fell: NDArray[np.bool_]) -> Row:
+def _shares(right: pd.DataFrame, name: str, fell: NDArray[np.int64]) -> Row:
     """Return how much is right, within 95 % (Wilson), and McNemar's p against rule and authors."""
-    mine = right[name].to_numpy()
-    ends = binomtest(int(mine.sum()), len(mine)).proportion_ci(method="wilson")
-    line: Row = {"tests": len(mine), "share": mine.mean()}
-    line |= {"share_low": ends.low, "share_high": ends.high}
-    line |= {"missed": int((~mine & fell).sum()), "alarms": int((~mine & ~fell).sum())}
+    mine = right[name]
+    ends = binomtest(mine.sum(), len(mine)).proportion_ci(method="wilson")
+    line = {
+        "tests": len(mine),
+        "share": mine.mean(),
+        "share_low": ends.low,
+        "share_high": ends.high,
+    }
+    line |= {"missed": int((~mine & (fell == 1)).sum()), "alarms": int((~mine & (fell == 0)).sum())}
     for other in (RULE, AUTHORS):
-        only, apart = int((mine & ~right[other]).sum()), int((mine != right[other]).sum())
+        only, apart = (mine & ~right[other]).sum(), (mine != right[other]).sum()
         line[f"p_{other}"] = binomtest(only, apart).pvalue if apart else 1.0
     return line
 
@@ -148,16 +148,11 @@ def finding(tables: Tables) -> str:
     )
 
 
-def rocks_of(tables: Tables) -> dict[int, pd.DataFrame]:
-    """Return the tests of each rock."""
-    return {rock: tables[f"rock-{rock}"] for rock in MESHES}
-
-
 def lost_by_all(tables: Tables) -> pd.DataFrame:
     """Return the tests that block, rule and authors all get wrong."""
-    lines = pd.concat([table.assign(rock=rock) for rock, table in rocks_of(tables).items()])
+    lines = pd.concat([tables[f"rock-{rock}"].assign(rock=rock) for rock in MESHES])
     wrong = lines[[EXACT, RULE, AUTHORS]].ne(lines["fell"], axis=0).all(axis=1)
-    return lines.loc[wrong, ["rock", "test", "pga_g", "pgv_m_s", "margin", "fell"]]
+    return lines.loc[wrong, ["rock", "test", *SCORES, "fell"]]
 
 
 def shown(tables: Tables) -> Tables:
@@ -174,7 +169,8 @@ def figures(tables: Tables) -> Figures:
     """Draw what fell over PGA and PGV, and the ROC curves."""
     from studies.drawing.rocks import draw_rocks
 
-    return {"rocks": draw_rocks(rocks_of(tables), SCORES, lost_by_all(tables))}
+    rocks = {rock: tables[f"rock-{rock}"] for rock in MESHES}
+    return {"rocks": draw_rocks(rocks, SCORES, lost_by_all(tables))}
 
 
 STUDY = Study(

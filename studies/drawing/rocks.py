@@ -29,10 +29,10 @@ def draw_rocks(
                   fillstyle="none", label="all three are wrong")  # fmt: skip
         axes.set(xscale="log", yscale="log", xlabel="PGA  [g]", ylabel="PGV  [m/s]")
         axes.set_title(f"rock {rock}", fontsize=10.5)
-        for score, sign in scores.items():
+        for score, sign in scores.items() if table["fell"].nunique() > 1 else ():
             _draw_curve(grid[2 + place], sign * table[score], table["fell"], NAMES[score])
-    for axes in grid[::2]:
-        axes.legend(fontsize=8, frameon=False)
+        for axes in grid[place::2]:
+            axes.legend(fontsize=8, frameon=False)
     return drawing
 
 
