@@ -18,15 +18,14 @@ from analytic.block import GRAVITY
 from analytic.record import Record
 from studies.cases.refusal import BadInputError
 
+CLONE = "a clone of ZhiangChen/virtual_shake_robot_pybullet"
 TABLE = Path("data", "Shake_Table_Response")
 MESHES = {1: "models/SP1_PBRmodel/final_sp1.obj", 2: "models/SP2_PBRmodel/final_sp2_1.obj"}
 FELL = "Experimental Results for response-Specimen {}"
 TUNED = {1: "Specimen 1-Numerical KN=10 KS=1", 2: "Specimen 2-Numerical KN=15 p=50"}
 """Of the authors' predictions for each rock those that are right most often."""
-DT = 1.0 / 800.0
-"""Time between samples [s]; the files print it in five digits."""
-FOOT = 5e-3
-"""Height [m] above the lowest point of a mesh up to which its points belong to the footprint."""
+DT = 1.0 / 800.0  # [s] between samples; the files print it in five digits
+FOOT = 5e-3  # [m] above the lowest point of a mesh: as high up its points belong to the footprint
 CELL = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 
 
@@ -37,8 +36,7 @@ def reading(path: Path, kind: str) -> Iterator[None]:
     try:
         yield
     except (*wrong, ElementTree.ParseError) as error:
-        clone = "--rocks must name a clone of ZhiangChen/virtual_shake_robot_pybullet"
-        raise BadInputError(f"{str(path)!r} is not {kind}; {clone}") from error
+        raise BadInputError(f"{str(path)!r} is not {kind}; --rocks must name {CLONE}") from error
 
 
 def read_tests(folder: Path) -> pd.DataFrame:
@@ -46,12 +44,10 @@ def read_tests(folder: Path) -> pd.DataFrame:
     heads = [FELL.format(rock) for rock in MESHES] + [*TUNED.values()]
     found = read_sheet(folder / TABLE / "Results_Granite.xlsx", heads)
     tests = found.join(read_sheet(folder / TABLE / "PGVA-zchen.xlsx", ["PGA", "PGVA"]), how="inner")
-    lines = {"test": tests.index, "pga_g": tests["PGA"]}
-    lines |= {"pgv_m_s": GRAVITY * tests["PGA"] * tests["PGVA"]}
-    for rock in MESHES:
-        fell, authors = tests[FELL.format(rock)], tests[TUNED[rock]]
-        lines |= {f"fell_{rock}": fell, f"authors_{rock}": authors}
-    return pd.DataFrame(lines)
+    tests.insert(0, "pgv_m_s", GRAVITY * tests["PGA"] * tests.pop("PGVA"))
+    names = [f"{word}_{rock}" for word in ("fell", "authors") for rock in MESHES]
+    names = dict(zip([*heads, "PGA"], [*names, "pga_g"], strict=True))
+    return tests.rename(columns=names).rename_axis("test").reset_index()
 
 
 def read_sheet(path: Path, heads: list[str]) -> pd.DataFrame:
@@ -69,9 +65,7 @@ def read_sheet(path: Path, heads: list[str]) -> pd.DataFrame:
             place: "".join(words[int(n)].itertext()).strip() for place, n in first.items() if n
         }
         table = pd.DataFrame(rest).rename(columns=names)[["Test Number", *heads]]
-        if table.isna().to_numpy().any():
-            raise ValueError
-        return table.apply(pd.to_numeric).set_index("Test Number")
+        return table.where(table.notna(), "none").apply(pd.to_numeric).set_index("Test Number")
 
 
 def read_motion(path: Path) -> Record:
