@@ -66,6 +66,7 @@ def test_a_folder_is_read(rocks):
         assert (alpha, radius) == pytest.approx((np.arctan(half / 0.4), np.hypot(half, 0.4)))
 
 
+@pytest.mark.slow
 def test_the_command_tells_every_test_that_has_a_record(rocks, tmp_path):
     assert run(["experiments", "--rocks", str(rocks), "--out", str(tmp_path / "out")]) == 0
     tables = STUDY.read(tmp_path / "out")
