@@ -46,8 +46,8 @@ def read_tests(folder: Path) -> pd.DataFrame:
     tests = found.join(read_sheet(folder / TABLE / "PGVA-zchen.xlsx", ["PGA", "PGVA"]), how="inner")
     tests.insert(0, "pgv_m_s", GRAVITY * tests["PGA"] * tests.pop("PGVA"))
     names = [f"{word}_{rock}" for word in ("fell", "authors") for rock in MESHES]
-    names = dict(zip([*heads, "PGA"], [*names, "pga_g"], strict=True))
-    return tests.rename(columns=names).rename_axis("test").reset_index()
+    renamed = dict(zip([*heads, "PGA"], [*names, "pga_g"], strict=True))
+    return tests.rename(columns=renamed).rename_axis("test").reset_index()
 
 
 def read_sheet(path: Path, heads: list[str]) -> pd.DataFrame:
@@ -65,7 +65,8 @@ def read_sheet(path: Path, heads: list[str]) -> pd.DataFrame:
             place: "".join(words[int(n)].itertext()).strip() for place, n in first.items() if n
         }
         table = pd.DataFrame(rest).rename(columns=names)[["Test Number", *heads]]
-        return table.where(table.notna(), "none").apply(pd.to_numeric).set_index("Test Number")
+        numbers: pd.DataFrame = table.where(table.notna(), "none").apply(pd.to_numeric)
+        return numbers.set_index("Test Number")
 
 
 def read_motion(path: Path) -> Record:

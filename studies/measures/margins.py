@@ -28,7 +28,7 @@ def measure(job: Job) -> Row:
         letters = "".join(LETTERS.get(outcome, "-") for outcome in found)
         return {**unanswered(""), "outcome": "found", "grid": letters}
     if job.labels["block"] == "margin":
-        solve = scaled(block, motion)
+        solve = scaled(block, motion)  # type: ignore[arg-type]  # it is a RigidBlock
         falls = (each for each in FACTORS if solve(each, 1.0)[1] is Outcome.OVERTURNED)
         return {**unanswered(""), "outcome": "found", "margin": next(falls, math.inf)}
     return answer(job)
