@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pandas as pd
@@ -50,7 +51,7 @@ def jobs(sources: Sequence[str], _: bool, options: Options) -> list[Job]:
     if options.rocks is None:
         raise BadInputError(f"--rocks is missing; it must name {CLONE}")
     folder = Path(options.rocks)
-    tests = read_tests(folder).to_dict("records")
+    tests = cast("list[Row]", read_tests(folder).to_dict("records"))
     asked = [(0, "grid", GRID[0], EXACT)]
     for rock, mesh in MESHES.items():
         asked += [(rock, *each, EXACT) for each in zip(MESH, read_mesh(folder / mesh), strict=True)]
@@ -59,10 +60,13 @@ def jobs(sources: Sequence[str], _: bool, options: Options) -> list[Job]:
     found = []
     for test in tests:
         path = folder / TABLE / f"Test{test['test']:03d}.txt"
-        motion = read_motion(path) if path.is_file() else None
-        for rock, name, sides, source in asked if motion else ():
-            case, labels = Question(system=block_of(*sides), motion=motion), {**test, "rock": rock}
-            found.append(Job(labels={**labels, "block": name}, case=case, source=source))
+        if not path.is_file():
+            continue  # the public folder lacks some
+        motion = read_motion(path)
+        for rock, name, sides, source in asked:
+            case = Question(system=block_of(*sides), motion=motion)
+            labels = {**test, "rock": rock, "block": name}
+            found.append(Job(labels=labels, case=case, source=source))
     if not found:
         raise BadInputError(f"--rocks is {options.rocks!r}; it holds no record of a test")
     return found
@@ -101,7 +105,9 @@ def tabulate(rows: pd.DataFrame) -> Tables:
         table[AUTHORS] = tests[f"authors_{rock}"]
         table = table.join(found["falls"].drop(columns="margin"))
         right = table.iloc[:, 4:].join(every).eq(fell, axis=0)
-        lines += [{"rock": rock, "source": name, **_shares(right, name, fell)} for name in right]
+        lines += [
+            {"rock": rock, "source": name, **_shares(right, str(name), fell)} for name in right
+        ]
         pairs = (fell == 1).sum() * (fell == 0).sum()
         for name, sign in SCORES.items() if pairs else ():
             falls, stays = (sign * table.loc[fell == value, name] for value in (1, 0))
@@ -114,7 +120,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
 def _shares(right: pd.DataFrame, name: str, fell: NDArray[np.int64]) -> Row:
     """Return how much is right, within 95 % (Wilson), and McNemar's p against rule and authors."""
     mine = right[name]
-    low, high = binomtest(mine.sum(), len(mine)).proportion_ci(method="wilson")
+    low, high = binomtest(int(mine.sum()), len(mine)).proportion_ci(method="wilson")
     line = {"tests": len(mine), "share": mine.mean(), "share_low": low, "share_high": high}
     line |= {"missed": (~mine & (fell == 1)).sum(), "alarms": (~mine & (fell == 0)).sum()}
     for other in (RULE, AUTHORS):
@@ -126,8 +132,8 @@ def _shares(right: pd.DataFrame, name: str, fell: NDArray[np.int64]) -> Row:
 def finding(tables: Tables) -> str:
     """Say how often block, rule and authors are right, and whether that differs."""
     lines = tables["shares"].set_index(["source", "rock"])
-    shares = (lines.loc[name, "share"] for name in (EXACT, RULE, AUTHORS))
-    block, rule, authors = (listed((100.0 * each).map("{:.1f}".format)) for each in shares)
+    shares = (100.0 * lines["share"]).map("{:.1f}".format).unstack()
+    block, rule, authors = map(listed, shares.loc[[EXACT, RULE, AUTHORS]].to_numpy())
     p = lines.loc[EXACT, ["p_rule", "p_authors"]].to_numpy().min()
     return (
         f"The exact block with two fitted numbers predicts {block} % of what two rocks did in "
