@@ -17,7 +17,7 @@ def draw_rocks(
     for rock, above, below in zip((1, 2), grid[:2], grid[2:], strict=True):
         table, fell = tables[f"rock-{rock}"], tables[f"rock-{rock}"]["fell"] == 1
         kinds = {"stood": table[~fell], "fell": table[fell], "all miss": lost[lost["rock"] == rock]}
-        for (name, tests), marker in zip(kinds.items(), "o^x", strict=True):
+        for (name, tests), marker in zip(kinds.items(), ("o", "^", "kx"), strict=True):
             above.plot(tests["pga_g"], tests["pgv_m_s"], marker, ms=4.0, alpha=0.6, label=name)
         above.set(xscale="log", yscale="log", xlabel="PGA  [g]", ylabel="PGV  [m/s]")
         above.set_title(f"rock {rock}")
