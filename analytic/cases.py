@@ -51,8 +51,8 @@ def solve_cases(
         cases = np.array([column.flat[where] for column in columns], dtype=np.float64)
         if restitution is None:
             # where all are of one slenderness, of one block
-            one = cases[0, :1]
-            cases[4] = housner_restitutions(cases[0] if np.any(cases[0] != one) else one)
+            first = cases[0, :1]
+            cases[4] = housner_restitutions(cases[0] if np.any(cases[0] != first) else first)
         check_cases(cases)
         constants = np.stack(declared.constants(cases[0]))
         omega, half_cycles = cases[2], cases[3]

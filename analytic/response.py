@@ -100,7 +100,8 @@ class Response:
     min_normal, friction_needed : float
         Smallest normal force over weight, and largest abs(horizontal)/normal force, that the
         no-lift-off, no-slip reference needs, of a block that overturns until it passes the critical
-        rotation for good; nan where a source does not report them.
+        rotation for good; nan where a source does not report them, and for a block that
+        is not homogeneous.
     slip_m, sink_m, hop_m : float
         Of an engine: the largest distance [m] that its contact slid, the largest depth of its
         lowest corner in the base, and the largest height above it.

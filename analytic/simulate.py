@@ -115,7 +115,7 @@ def simulate(
     def solve(notes: Notes) -> Ended:
         return march(laws, exactly, moving, begin, 0.0, notes, workspace())
 
-    watched = isinstance(block, RigidBlock) and block.is_even and not linear
+    watched = isinstance(block, RigidBlock) and block.is_homogeneous and not linear
     return as_response(block, posed, solve, times is not None, watched)
 
 

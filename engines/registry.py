@@ -29,9 +29,6 @@ OWN = {
 }
 """Name of an engine -> where its declaration stands."""
 
-elsewhere: Callable[[str], Engine] | None = None
-"""Declares an engine of another package where its code must not be loaded in this process."""
-
 
 class UnloadableError(OSError, ValueError):
     """An engine that stands nowhere; the message is one line that says why."""
@@ -41,7 +38,7 @@ class Engines(Mapping[str, Engine]):
     """Name -> declaration, read when an engine is first asked for; no library is imported."""
 
     def __getitem__(self, name: str) -> Engine:
-        return _declared(name, _places()[name])
+        return loaded(name, _places()[name])
 
     def __iter__(self) -> Iterator[str]:
         return iter(_places())
@@ -128,13 +125,8 @@ def _is_foreign(place: EntryPoint) -> bool:
 
 
 @cache
-def _declared(name: str, place: EntryPoint) -> Engine:
-    return elsewhere(name) if elsewhere and _is_foreign(place) else loaded(name)
-
-
-def loaded(name: str) -> Engine:
-    """Return an engine as its code, loaded in this process, declares it; ValueError if none is."""
-    place = _places()[name]
+def loaded(name: str, place: EntryPoint) -> Engine:
+    """Return an engine as its code declares it; ValueError if none is."""
     found = _found(name, place)
     if callable(found) and place in _further():
         return undeclared(name, found, place.module.partition(".")[0])

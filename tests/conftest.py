@@ -23,7 +23,7 @@ def forgetting():
         patch.setenv(registry.FURTHER, "")
         yield patch
     registry._places.cache_clear()
-    registry._declared.cache_clear()
+    registry.loaded.cache_clear()
     SOURCES.clear()
     SOURCES.update(kept)
 

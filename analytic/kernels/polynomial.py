@@ -20,7 +20,7 @@ MAX_DEPTH = 45
 NEWTON_DONE = 1e-9
 """Relative length of the last Newton step of a root."""
 
-EDGE = 1e-12
+EDGE = 1e-9
 """Part of a bracket in which a chord's zero is taken to be at its end."""
 
 SAME_ROOT = 1e-15

@@ -165,12 +165,12 @@ def run(
             if lines and monotonic() - told > TELL_S:
                 told = monotonic()
                 say(f"{len(done)} of {len(jobs)} cases")
-            if ended:
-                raise KeyboardInterrupt(ended[0])
             key = keys[left[number]]
             done[key] = {**labels[left[number]], **row}
             store.add(key, done[key], makers[jobs[left[number]].source])
             bar.update()
+            if ended:
+                raise KeyboardInterrupt(ended[0])
     return [done[key] for key in keys]
 
 

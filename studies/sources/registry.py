@@ -63,7 +63,7 @@ class Source:
         if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
         if isinstance(block, RigidBlock) and not block.is_even and self.kind != "model":
-            raise ValueError(f"{self.name} has no block with an offset; it is for models alone")
+            raise ValueError(f"{self.name} takes no block with an offset; only models do")
         if getattr(self.call, "func", None) is run_engine:
             self.declared.use(scene_of(block, motion, self.preset, **options))
             return

@@ -103,8 +103,8 @@ signal.signal(signal.SIGALRM, signal.default_int_handler)
 for number in range(100):  # interrupted anywhere, it is never made to crash
     with suppress(KeyboardInterrupt):
         signal.setitimer(signal.ITIMER_REAL, 1e-3 + 1e-5 * number)
-        while simulate(block, pulse):
-            pass
+        for _ in range(1000):
+            simulate(block, pulse)
 """
 
 

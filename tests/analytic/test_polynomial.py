@@ -29,6 +29,12 @@ def all_roots(coefficients):
 @example([1.1985469861617877, 1.3346662292034783, 1.1, 0.36, -0.03330319795478531], [0.5], 7.467)
 @example([-0.2, 0.304, 0.864], [0.5, 0.25, 0.75], 0.7)
 @example([-0.4, -0.038, 0.232, 1.103], [0.5, 0.25], 3.1)
+# the value at 0.75 is rounding, and says nothing of the root beyond
+@example(
+    [1.3839232288930248, 0.6674282039319627, 0.5707148808912018, 0.9823074301086024, 0.04],
+    [0.375, 0.5, 0.75],
+    1.0,
+)
 def test_the_roots_put_in_come_out(anywhere, borders, scale):
     """Roots on the borders of intervals hide no others."""
     roots = [r for r in (*anywhere, *borders) if abs(r) > 1e-3 and abs(r - 1) > 1e-3]

@@ -131,6 +131,13 @@ def test_a_block_released_on_its_strong_side_falls_over_the_weak_one():
     assert theta < 0.3 * strong.alpha
 
 
+def test_contact_forces_are_those_of_a_homogeneous_block_alone():
+    sizes, pulse = {"width": 0.6, "height": 1.8}, SinePulse(amplitude=4.0, omega=6.0)
+    blocks = [RigidBlock(**sizes, inertia=each) for each in (None, 0.3)]
+    needed = [simulate(block, pulse).friction_needed for block in blocks]
+    assert [math.isnan(each) for each in needed] == [False, True]
+
+
 @pytest.mark.parametrize("given", [{"offset": 0.3}, {"inertia": 0.0}, {"restitution": 0.5}])
 def test_what_no_block_has_is_refused(given):
     with pytest.raises(ValueError, match="; it must"):

@@ -135,6 +135,13 @@ def test_a_second_run_at_the_same_time_is_refused(tmp_path):
     Store(tmp_path, "sweep")
 
 
+def test_a_signal_that_compiled_code_lost_ends_a_run_all_the_same(tmp_path, monkeypatch):
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(run, "ended", [2])
+        filled(tmp_path)
+    assert filled(tmp_path)[1] == len(JOBS) - 1
+
+
 def test_a_damaged_store_is_refused(tmp_path):
     filled(tmp_path)
     (tmp_path / store.ROWS).write_bytes(b"no database at all, but long enough to be read" * 99)
