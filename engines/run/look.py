@@ -24,9 +24,10 @@ from engines.declaration import Stepping
 from engines.run.frame import Spread, begin_spread, see_spread
 from engines.run.ground import rows_of
 from engines.run.landing import Landing, begin_landing, choose
+from engines.run.rows import Row
 from engines.run.slide import Slide, begin_slide, see_slide
 from engines.run.steps import FIXED, LANDING, Pace, advance, begin_pace, even, pass_to, timetable
-from engines.run.watch import EVENTS_A_LOOK, Row, Watch, begin_watch, see
+from engines.run.watch import EVENTS_A_LOOK, Watch, begin_watch, see
 from engines.scene import Scene
 from engines.world import Choice, ContactPhase, FloatArray, Moment, Pose, Resolution, Step
 

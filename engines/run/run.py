@@ -13,7 +13,7 @@ from engines.declaration import Stepping, Use
 from engines.run import frame
 from engines.run.look import Monitor, pays_to_compile
 from engines.run.slide import slide_response
-from engines.run.watch import problem_of, response_of
+from engines.run.verdict import problem_of, response_of
 from engines.scene import Scene
 from engines.world import UNLIMITED, FloatArray, Resolution, World
 

@@ -7,7 +7,8 @@ import math
 from dataclasses import dataclass
 
 from analytic.response import History, Outcome, Response
-from engines.run.watch import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS, Row, put
+from engines.run.rows import Row, put
+from engines.run.watch import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS
 from engines.scene import Scene
 from engines.world import FloatArray, Pose
 

@@ -7,11 +7,10 @@ impacts are extrapolated from the steps before and after, for no step need end o
 
 import math
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
-from analytic.response import History, Impact, Outcome, Problem, Reason, Response
+from engines.run.rows import TIME, Row, copy, extrapolated, put, row_of
 from engines.scene import Body, Scene
 from engines.world import FloatArray, Moment, Pose, Resolution
 
@@ -24,23 +23,6 @@ EDGE = 4
 SHORTENED = 0.7
 """A step shorter than this part of the one before is one of an approach, which halves what is left;
 even steps up to the next corner of the motion differ by less."""
-
-TIME, RATE_S, THETA, RATE = range(4)
-"""Columns of rows, as of `Row`."""
-
-
-class Row(NamedTuple):
-    """The end of a step: time [s], rotation [rad], and the angular velocity [rad/s].
-
-    The velocity belongs to the time `rate_s` [s], in the middle of the step or at its end, as the
-    engine integrates.
-    """
-
-    time: float
-    rate_s: float
-    theta: float
-    rate: float
-
 
 LIFT_WIDTHS, LIFT_FALL = 1e-8, 1e-3
 """A block has lifted when its free corner is higher above the base than this part of the width, or
@@ -74,9 +56,6 @@ it holds it slides by 1.1e-4 at most in the paper's cases."""
 
 SINK_WIDTHS = 0.05
 """Of a corner deeper in the base than this part of the width a reader should know."""
-
-PIVOT_SLID = "the pivot slid {:.3g} m along the base"
-BEAM_SLID = "the beam slid {:.3g} m along the columns' tops"
 
 PARTED_PART = 0.1
 """Columns of a frame whose rotations differ by more than this part of alpha have parted: below the
@@ -442,87 +421,3 @@ def lift_off(watch: Watch) -> float:
     if root <= 1.0:
         return watch.last_rest
     return max((root * a.rate_s - b.rate_s) / (root - 1.0), watch.last_rest)
-
-
-def put(rows: FloatArray, number: int, row: tuple[float, float, float, float]) -> None:
-    """Write a row."""
-    rows[number, 0], rows[number, 1], rows[number, 2], rows[number, 3] = row
-
-
-def row_of(rows: FloatArray, number: int) -> Row:
-    """Read a row."""
-    return Row(rows[number, TIME], rows[number, RATE_S], rows[number, THETA], rows[number, RATE])
-
-
-def copy(rows: FloatArray, source: int, to: int) -> None:
-    """Write a row again in another place; a slice would compile for much longer."""
-    for column in range(rows.shape[1]):
-        rows[to, column] = rows[source, column]
-
-
-def extrapolated(rows: FloatArray, first: int, stop: int, time: float) -> float:
-    """Return the velocity [rad/s] at a time [s] by the polynomial through some rows."""
-    total = 0.0
-    for i in range(first, stop):
-        weight = 1.0
-        for j in range(first, stop):
-            if j != i:
-                weight *= (time - rows[j, RATE_S]) / (rows[i, RATE_S] - rows[j, RATE_S])
-        total += weight * rows[i, RATE]
-    return total
-
-
-def problem_of(problem: int, far: float, width: float) -> Problem | None:
-    """Return why the response is no longer that of what was posed, where there is a reason."""
-    if problem == NO_PROBLEM:
-        return None
-    if problem in (SLIPPED, BEAM_SLIPPED):
-        slid = (PIVOT_SLID if problem == SLIPPED else BEAM_SLID).format(far)
-        assumed = "steps that land on impacts assume that it holds, and allow at most"
-        return Problem(Reason.SLID, f"{slid}; {assumed} {HOLD_WIDTHS * width:.3g} m")
-    words = {
-        DIVERGED: (Reason.DIVERGED, "the engine's state is not finite"),
-        SANK: (Reason.SANK, f"the block sank {far:.3g} m, through the base"),
-        THROWN: (Reason.THROWN, f"the block was thrown {far:.3g} m off the base"),
-        SLID: (Reason.SLID, PIVOT_SLID.format(far)),
-        BEAM_LOST: (Reason.SLID, BEAM_SLID.format(far)),
-        BEAM_THROWN: (Reason.THROWN, f"the beam was thrown {far:.3g} m off the columns"),
-        PARTED: (Reason.PARTED, f"the columns' rotations differ by {far:.3g} of alpha"),
-    }
-    return Problem(*words[int(problem)])
-
-
-def response_of(watch: Watch, events: FloatArray, history: History | None) -> Response:
-    """Return what was seen of a body; there is room for one more of its events (k, 4)."""
-    complete(watch, events)
-    if watch.overturned:
-        outcome, ratio = Outcome.OVERTURNED, math.inf
-    else:
-        outcome = Outcome.ROCKED if watch.rocked else Outcome.AT_REST
-        ratio = float(watch.peak / watch.alpha)
-    seen = events[: watch.events]
-    uplifts, impacts, rests = (seen[seen[:, KIND] == kind] for kind in (UPLIFT, IMPACT, REST))
-    return Response(
-        outcome=outcome,
-        peak_ratio=ratio,
-        crossed=bool(watch.crossed or watch.overturned),
-        impacts=tuple(Impact(*impact) for impact in impacts[:, WHEN:].tolist()),
-        uplifts=tuple(uplifts[:, WHEN].tolist()),
-        rests=tuple(rests[:, WHEN].tolist()),
-        message=_remark(watch),
-        history=history,
-        slip_m=float(watch.slide),
-        sink_m=float(watch.sink),
-        hop_m=float(watch.highest),
-    )
-
-
-def _remark(watch: Watch) -> str:
-    """Say what a reader should know of a usable response: how deep it stood, how far it slid."""
-    width, said = 2.0 * watch.half_width, []
-    if watch.sunk > width * SINK_WIDTHS:
-        said.append(f"the block sank {watch.sunk:.3g} m into the base")
-    for words, far in ((PIVOT_SLID, watch.slide), (BEAM_SLID, watch.beam_slide)):
-        if far > width * HOLD_WIDTHS and not watch.slides:
-            said.append(words.format(far))
-    return "; ".join(said)
