@@ -97,10 +97,11 @@ class RigidBlock(Upright):
 
     def __post_init__(self) -> None:
         half = 0.5 * measurable("width", self.width)
-        if not abs(finite("offset", self.offset)) < half:
+        object.__setattr__(self, "offset", finite("offset", self.offset))
+        if not abs(self.offset) < half:
             raise ValueError(f"offset is {self.offset!r}; it must be between -{half} and {half}")
         if self.inertia is not None:
-            positive("inertia", self.inertia)
+            object.__setattr__(self, "inertia", positive("inertia", self.inertia))
         Upright.__post_init__(self)
         if self.restitution is not None and not self.is_even:
             words = "it must not be given for a block with an offset, which has two"

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 class Part:
     """A folder of results, and the command that fills it, with its further arguments.
 
-    It has a title where one study fills several folders; `weaker` is what its quick form lacks.
+    It has a title where one study fills several folders; `weaker` is what its quick form lacks. One
+    that `needs` a folder of the reader's is left out of a report.
     """
 
     folder: str
@@ -28,6 +29,7 @@ class Part:
     quick: tuple[str, ...] = ("--quick",)
     full: tuple[str, ...] = ()
     weaker: str = ""
+    needs: tuple[str, ...] = ()
 
     @cached_property
     def study(self) -> Study:
@@ -37,7 +39,14 @@ class Part:
 
     def words(self, out: Path | str, full: bool) -> list[str]:
         """Return the command line after `rocking`."""
-        return [self.name, "--out", str(out), *self.always, *(self.full if full else self.quick)]
+        return [
+            self.name,
+            "--out",
+            str(out),
+            *self.needs,
+            *self.always,
+            *(self.full if full else self.quick),
+        ]
 
     def command(self, full: bool) -> str:
         """Return the whole command line."""
@@ -132,6 +141,9 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         ),
     ),
     "Other scenes": (Part("scenes", "scenes"),),
+    "Rocks on a shake table": (
+        Part("experiments", "experiments", quick=(), needs=("--rocks", "FOLDER")),
+    ),
 }
 """Title of a chapter -> its parts."""
 PARTS = tuple(part for parts in CHAPTERS.values() for part in parts)

@@ -38,6 +38,7 @@ def write_page(path: Path, folder: Path, full: bool) -> None:
         chapters={
             title: [_section(one, folder / one.folder, full) for one in parts]
             for title, parts in CHAPTERS.items()
+            if not parts[0].needs
         },
         made=_made(folder / PARTS[0].folder),
         full=full,

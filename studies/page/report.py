@@ -33,7 +33,8 @@ def command(*, out: Place, full: bool = False) -> int:
 
     _prepare(out, full)
     codes = []
-    with tqdm(PARTS, disable=None, unit="study") as bar:
+    parts = [part for part in PARTS if not part.needs]
+    with tqdm(parts, disable=None, unit="study") as bar:
         for part in bar:
             bar.set_description(part.folder)
             if bar.disable:  # no terminal: a line for each, so that a log shows where it is
@@ -43,7 +44,7 @@ def command(*, out: Place, full: bool = False) -> int:
                 return code
             codes.append(code)
     write_page(out / PAGE, out, full)
-    for part in PARTS:
+    for part in parts:
         print(f"{part.folder}: {part.study.finding(part.study.read(out / part.folder))}")
     print(out / PAGE)
     return max(codes)

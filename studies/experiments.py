@@ -1,0 +1,192 @@
+"""Rocks that fell on a shake table, or did not: who predicts it, and with how many numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+import pandas as pd
+from cyclopts import Parameter
+from numpy.typing import NDArray
+from scipy.stats import binomtest, mannwhitneyu
+
+from analytic.response import Outcome
+from studies.cases.refusal import BadInputError
+from studies.cases.rocks import CLONE, MESHES, TABLE, read_mesh, read_motion, read_tests
+from studies.kit.jobs import Job, Question, Row
+from studies.kit.say import listed
+from studies.kit.study import Figures, Study, Tables
+from studies.measures.margins import GRID, block_of, measure
+
+FITTED = {1: (0.11, 0.35), 2: (0.13, 0.25)}
+"""The best block of the grid for each rock, which engines and the search for margins are given."""
+FOLDS, SEED, PARTS = 5, 0, np.linspace(0.0, 1.0, 61)
+"""Parts of the tests; the seed that deals them; quantiles of PGA and PGV that are tried."""
+EXACT, RULE, AUTHORS = "exact", "rule", "authors"
+MESH = ("mesh, weak side right", "mesh, weak side left", "mesh, weak side on both")
+"""The blocks of a mesh, in their order: the data do not say which side faced where."""
+SCORES = {"margin": -1.0, "pga_g": 1.0, "pgv_m_s": 1.0}  # with the sign of what falls
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Which measurements.
+
+    Attributes
+    ----------
+    rocks
+        Folder of the shake-table tests: a clone of ZhiangChen/virtual_shake_robot_pybullet.
+    """
+
+    rocks: str | None = None
+
+
+def jobs(sources: Sequence[str], _: bool, options: Options) -> list[Job]:
+    """Return a job for each record and block, for each margin, and for each engine's block."""
+    if options.rocks is None:
+        raise BadInputError(f"--rocks is missing; it must name {CLONE}")
+    folder = Path(options.rocks)
+    tests = cast("list[Row]", read_tests(folder).to_dict("records"))
+    asked = [(0, "grid", block_of(*GRID[0]), EXACT)]
+    for rock, mesh in MESHES.items():
+        fitted, blocks = block_of(*FITTED[rock]), read_mesh(folder / mesh)
+        asked += [(rock, *each, EXACT) for each in zip(MESH, blocks, strict=True)]
+        asked += [(rock, "margin", fitted, EXACT)]
+        asked += [(rock, name, fitted, name) for name in sources if name != EXACT]
+    found = []
+    for test in tests:
+        path = folder / TABLE / f"Test{test['test']:03d}.txt"
+        if not path.is_file():
+            continue  # the public folder lacks some
+        motion = read_motion(path)
+        for rock, name, block, source in asked:
+            case = Question(system=block, motion=motion)
+            labels = {**test, "rock": rock, "block": name}
+            found.append(Job(labels=labels, case=case, source=source))
+    if not found:
+        raise BadInputError(f"--rocks is {options.rocks!r}; it holds no record of a test")
+    return found
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return the tests of each rock with who predicts a fall; what is right; and areas under ROC.
+
+    What is fitted predicts the fifth of the tests that its fit has not seen; fitted to all, it is
+    listed besides. A source that fails predicts nan, which is wrong.
+    """
+    falls = (rows["outcome"] == Outcome.OVERTURNED.value).astype(float)
+    rows = rows.assign(falls=falls.where(rows["outcome"] != Outcome.FAILED.value))
+    tests = rows[rows["block"] == "grid"].set_index("test")
+    letters = np.array([list(line) for line in tests["grid"]])
+    strong = tests[["pga_g", "pgv_m_s"]]
+    rules = np.array(list(product(*strong.quantile(PARTS).to_numpy().T)))
+    tried = {
+        EXACT: (np.array(GRID), np.where(letters == "?", math.nan, letters == "f")),
+        RULE: (rules, np.all(strong.to_numpy()[:, None] > rules, axis=2).astype(float)),
+    }
+    folds = np.random.default_rng(SEED).permutation(len(tests)) % FOLDS
+    tables, lines, areas = {}, list[Row](), list[Row]()
+    for rock in MESHES:
+        found = rows[rows["rock"] == rock].pivot(index="test", columns="block")
+        fell = tests[f"fell_{rock}"].to_numpy()
+        table = strong.assign(margin=found["margin", "margin"], fell=fell)
+        every = pd.DataFrame(index=tests.index)
+        for name, (numbers, predicted) in tried.items():
+            right = predicted == fell[:, None]
+            best, table[name] = right.sum(axis=0).argmax(), math.nan
+            every[f"{name}, fitted to all: {numbers[best].round(3)}"] = predicted[:, best]
+            for fold in range(FOLDS):
+                best = right[folds != fold].sum(axis=0).argmax()
+                table.loc[folds == fold, name] = predicted[folds == fold, best]
+        table[AUTHORS] = tests[f"authors_{rock}"]
+        table = table.join(found["falls"].drop(columns="margin"))
+        right = table.iloc[:, 4:].join(every).eq(fell, axis=0)
+        lines += [
+            {"rock": rock, "source": name, **_shares(right, str(name), fell)} for name in right
+        ]
+        pairs = (fell == 1).sum() * (fell == 0).sum()
+        for name, sign in SCORES.items() if pairs else ():
+            falls, stays = (sign * table.loc[fell == value, name] for value in (1, 0))
+            area = mannwhitneyu(falls, stays).statistic / pairs
+            areas.append({"rock": rock, "score": name, "area": area})
+        tables[f"rock-{rock}"] = table.reset_index()
+    return {**tables, "shares": pd.DataFrame(lines), "areas": pd.DataFrame(areas)}
+
+
+def _shares(right: pd.DataFrame, name: str, fell: NDArray[np.int64]) -> Row:
+    """Return how much is right, within 95 % (Wilson), and McNemar's p against rule and authors."""
+    mine = right[name]
+    low, high = binomtest(int(mine.sum()), len(mine)).proportion_ci(method="wilson")
+    line = {"tests": len(mine), "share": mine.mean(), "share_low": low, "share_high": high}
+    line |= {"missed": (~mine & (fell == 1)).sum(), "alarms": (~mine & (fell == 0)).sum()}
+    for other in (RULE, AUTHORS):
+        only, apart = (mine & ~right[other]).sum(), (mine != right[other]).sum()
+        line[f"p_{other}"] = binomtest(only, apart).pvalue if apart else 1.0
+    return line
+
+
+def finding(tables: Tables) -> str:
+    """Say how often block, rule and authors are right, and whether that differs."""
+    lines = tables["shares"].set_index(["source", "rock"])
+    shares = (100.0 * lines["share"]).map("{:.1f}".format).unstack()
+    block, rule, authors = map(listed, shares.loc[[EXACT, RULE, AUTHORS]].to_numpy())
+    p = lines.loc[EXACT, ["p_rule", "p_authors"]].to_numpy().min()
+    return (
+        f"The exact block with two fitted numbers predicts {block} % of what two rocks did in "
+        f"{lines['tests'].max()} tests, two thresholds of PGA and PGV {rule} %, and the authors' "
+        f"model {authors} %: {'chance may do that' if p > 0.05 else 'they differ'} (p {p:.2g})."
+    )
+
+
+def lost_by_all(tables: Tables) -> pd.DataFrame:
+    """Return the tests that block, rule and authors all get wrong."""
+    lines = pd.concat([tables[f"rock-{rock}"].assign(rock=rock) for rock in MESHES])
+    wrong = lines[[EXACT, RULE, AUTHORS]].ne(lines["fell"], axis=0).all(axis=1)
+    return lines.loc[wrong, ["rock", "test", *SCORES, "fell"]]
+
+
+def shown(tables: Tables) -> Tables:
+    """Return the shares, the areas, and the tests that everyone gets wrong."""
+    return {
+        "Part of the tests that is right, of each rock, within 95 %; falls that are missed and "
+        "false alarms; McNemar's p against rule and authors": tables["shares"],
+        "Area under the ROC curve: how well one number orders the tests": tables["areas"],
+        "Tests that block, rule and authors get wrong": lost_by_all(tables),
+    }
+
+
+def figures(tables: Tables) -> Figures:
+    """Draw what fell over PGA and PGV, and the ROC curves."""
+    from studies.drawing.rocks import draw_rocks
+
+    return {"rocks": draw_rocks(tables, SCORES, lost_by_all(tables))}
+
+
+STUDY = Study(
+    name="experiments",
+    question="Which rocks fall on a shake table, and who predicts it?",
+    help="""Two rocks of granite under recorded motions of a shake table, against what they did.
+
+The exact block, fitted and from the meshes; a rule that PGA and PGV exceed thresholds; the authors'
+model; and engines that are asked, with the fitted block. Ten minutes without engines. Writes
+rock-1.csv, rock-2.csv, shares.csv, areas.csv, findings.txt and a picture.""",
+    sources=(EXACT,),
+    options=Options,
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    captions={
+        "rocks": "What fell and what stood, over PGA and PGV, with the tests that all get wrong; "
+        "and how well the margin, PGA and PGV tell one from the other (ROC curves)."
+    },
+)
+command = STUDY.command()

@@ -1,0 +1,117 @@
+"""Rocks on a shake table: a small folder in the form of the public one, made here."""
+
+from itertools import product
+from zipfile import ZipFile
+
+import numpy as np
+import pandas as pd
+import pytest
+from commanding import refused
+
+from studies.__main__ import run
+from studies.cases.rocks import DT, FELL, MESHES, TABLE, TUNED, read_mesh, read_motion, read_tests
+from studies.experiments import STUDY, tabulate
+from studies.measures.margins import FACTORS, GRID
+
+SPACE = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
+FACES = ["124", "143", "578", "586", "156", "162", "348", "387", "137", "175", "268", "284"]
+HEADS = ["Test Number", *(text for rock in MESHES for text in (FELL.format(rock), TUNED[rock]))]
+
+
+def workbook(path, heads, lines):
+    """Write a workbook as Excel does: its words apart, and an empty row at first."""
+    rows = "<row/>"
+    for n, line in enumerate([range(len(heads)), *lines], 1):
+        cells = (f'<c r="{chr(65 + k)}{n}"><v>{value}</v></c>' for k, value in enumerate(line))
+        rows += f"<row>{''.join(cells)}</row>"
+    words = "".join(f"<si><t>{head} </t></si>" for head in heads)
+    with ZipFile(path, "w") as book:
+        book.writestr("xl/sharedStrings.xml", f"<sst {SPACE}>{words}</sst>")
+        book.writestr("xl/worksheets/sheet1.xml", f"<worksheet {SPACE}>{rows}</worksheet>")
+
+
+@pytest.fixture
+def rocks(tmp_path):
+    """Pulses of 0.3 g, of growing length; the last two fell; the first two have no record.
+
+    The rocks are boxes 0.2 m wide and 0.8 m high, with a foot of 0.1 m on the right.
+    """
+    folder, tests = tmp_path / "rocks", range(11, 17)
+    (folder / TABLE).mkdir(parents=True)
+    workbook(folder / TABLE / "PGVA-zchen.xlsx", ["Serial Number", "Test Number", "PGA", "PGVA"],
+             [(n, test, 0.3, 0.01 * test) for n, test in enumerate(tests)])  # fmt: skip
+    workbook(folder / TABLE / "Results_Granite.xlsx", HEADS,
+             [(test, *[int(test > 14)] * 4) for test in tests])  # fmt: skip
+    points = [*product((5.0, 5.2), (7.0, 7.9), (9.0, 9.8)), (5.3, 7.0, 9.0), (5.3, 7.9, 9.0)]
+    lines = ["v {} {} {}".format(*point) for point in points]
+    for path in MESHES.values():
+        (folder / path).parent.mkdir(parents=True)
+        (folder / path).write_text("\n".join([*lines, *("f " + "//1 ".join(f) for f in FACES)]))
+    for test in tests[2:]:
+        times = DT * np.arange(400)
+        pulse = 0.3 * np.sin(np.pi * times / (0.05 * (test - 10))) * (times < 0.05 * (test - 10))
+        table = pd.DataFrame({n: 0.03 + pulse if n % 2 else times for n in range(8)})
+        text = table.to_csv(sep="\t", index=False, float_format="%.6g").replace("\n", "\t\n")
+        (folder / TABLE / f"Test{test:03d}.txt").write_text(text)
+    return folder
+
+
+def test_a_folder_is_read(rocks):
+    tests, motion = read_tests(rocks), read_motion(rocks / TABLE / "Test014.txt")
+    assert tests["pgv_m_s"].iloc[3] == pytest.approx(9.81 * 0.3 * 0.14)
+    assert tests["authors_1"].tolist() == tests["fell_2"].tolist() == [0, 0, 0, 0, 1, 1]
+    assert motion.samples.mean() == pytest.approx(0.0, abs=1e-12) and motion.dt == DT
+    assert np.ptp(motion.samples) == pytest.approx(0.3 * 9.81, rel=1e-3)
+    blocks = read_mesh(rocks / MESHES[1])
+    found = [(each.width, each.offset, each.height, each.inertia) for each in blocks]
+    alike = (0.8, (0.2**2 + 0.8**2) / 12.0)
+    wanted = [(0.3, 0.05, *alike), (0.3, -0.05, *alike), (0.2, 0.0, *alike)]
+    np.testing.assert_allclose(found, wanted, rtol=1e-12)
+
+
+@pytest.mark.slow
+def test_the_command_tells_every_test_that_has_a_record(rocks, tmp_path):
+    assert run(["experiments", "--rocks", str(rocks), "--out", str(tmp_path / "out")]) == 0
+    tables = STUDY.read(tmp_path / "out")
+    assert tables["rock-1"]["test"].tolist() == [13, 14, 15, 16]
+    shares = tables["shares"].set_index(["rock", "source"])
+    assert shares.loc[(1, "authors"), ["tests", "share", "alarms"]].tolist() == [4, 1.0, 0]
+
+
+def test_shares_are_those_of_what_the_rows_say():
+    """Of 20 tests 10 fell; the third block of the grid is wrong in 2, the authors in 5."""
+    test, fell = np.arange(20), np.arange(20) % 2
+    letters = np.where(fell != (test < 2), "--f", "---") + np.array("?" * (len(GRID) - 3))
+    base = {"test": test, "pga_g": 0.1 + 0.01 * fell, "pgv_m_s": 0.1 + 0.01 * fell}
+    base |= {f"fell_{rock}": fell for rock in MESHES}
+    base |= {f"authors_{rock}": np.where(test < 5, 1 - fell, fell) for rock in MESHES}
+    found = base | {"outcome": "found", "margin": np.where(fell, FACTORS[0], np.inf)}
+    rows = [pd.DataFrame(found | {"rock": 0, "block": "grid", "grid": letters})]
+    for rock in MESHES:
+        rows.append(pd.DataFrame(found | {"rock": rock, "block": "margin"}))
+        rows.append(pd.DataFrame(base | {"rock": rock, "block": "x", "outcome": "failed"}))
+    tables = tabulate(pd.concat(rows))
+    shares = tables["shares"].set_index(["rock", "source"])
+    assert shares.loc[1, "share"].tolist() == [0.9, 1.0, 0.75, 0.0, 0.9, 1.0]
+    line = shares.loc[(1, "exact")]
+    assert line[["p_authors", "p_rule"]].tolist() == pytest.approx([0.25, 0.5])  # 0 to 3, 2 to 0
+    assert line[["share_low", "share_high"]].tolist() == pytest.approx([0.699, 0.972], abs=1e-3)
+    assert line[["missed", "alarms"]].tolist() == [1, 1]
+    assert tables["areas"]["area"].tolist() == 6 * [1.0]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "part"),
+    [
+        ("Results_Granite.xlsx", "no zip", "workbook"),
+        ("Test014.txt", "a\n" + "0\t" * 8 + "\n0.00125\t1\t", "whole"),
+        ("Test014.txt", "a\n" + "0\t" * 8 + "\n" + "0.5\t" * 8, "steps"),
+        ("../../" + MESHES[2], "v 1 2 3", "mesh"),
+    ],
+)
+def test_another_folder_is_refused(rocks, capsys, tmp_path, name, text, part):
+    (rocks / TABLE / name).write_text(text)
+    asked = ["experiments", "--out", tmp_path / "out"]
+    refused(capsys, [*asked, "--rocks", rocks], "--rocks", part)
+    refused(capsys, [*asked, "--rocks", tmp_path], "--rocks", "Results_Granite.xlsx")
+    refused(capsys, asked, "--rocks is missing")
