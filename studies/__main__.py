@@ -19,6 +19,7 @@ GROUPS = {
         "linearizations": "Where a linearization errs: onset, frequency or saddle.",
         "validate": "Random cases that no setting was tuned on.",
         "precision": "Error against run time of every source.",
+        "batch": "The paper's cases as a batch on a GPU: cases a second at an error.",
         "contact": "What each contact setting of an engine costs and gains.",
         "restitution": "One impact: the coefficient of restitution that each engine gives.",
         "stability": "Stiff and extreme cases: which sources stay finite and right.",

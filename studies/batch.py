@@ -1,0 +1,182 @@
+"""The paper's cases as one batch of worlds: cases a second at an error, and does it repeat?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from itertools import product
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+from cyclopts import Parameter
+
+from engines.world import FloatArray
+from studies.cases.refusal import BadInputError
+from studies.kit.jobs import Job, Question, Row
+from studies.kit.say import part
+from studies.kit.study import Figures, Study, Tables
+from studies.measures.batches import (
+    EVERY,
+    EXACT,
+    MEASURED,
+    NAMES,
+    SPREAD,
+    WARP,
+    C,
+    all_cases,
+    exact_peaks,
+    measure,
+    numbers_of,
+    unpacked,
+)  # fmt: skip
+from studies.measures.wrongness import KINDS, NO_ANSWER, kinds_of
+
+TARGETS = (0.1, 0.01, 0.001)
+"""Median errors at which cases a second are compared."""
+WORLDS = {"cpu": (64,), "cuda": (8192, 1, 64, 1024, 32768)}
+"""Device -> worlds: at every preset and step, then at the first."""
+USUAL = (("tuned, impratio 100", 1.0), ("default", 2.0), ("recommended", 1.0), ("tuned", 1.0))
+STEPS_MS = (2.0, 1.0, 0.5, 0.25)
+RUNS = 20
+SAME = ["backend", "device", "preset", "dt_ms", "worlds", "runs"]
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Where MuJoCo Warp runs.
+
+    Attributes
+    ----------
+    device
+        cpu or cuda, where MuJoCo Warp runs; by default it is left out.
+    """
+
+    device: Literal["cpu", "cuda"] | None = None
+
+
+def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
+    """Return a job for each batch: of the exact solution, of MuJoCo's C, and of MuJoCo Warp."""
+    device = options.device
+    if device and not find_spec("mujoco_warp"):
+        raise BadInputError(f"--device is {device}; it needs MuJoCo Warp: install rocking[warp]")
+    asked = USUAL if quick else tuple(product(dict(USUAL), STEPS_MS))
+    rows: list[tuple[Any, ...]] = [(EXACT, "cpu", "", 0.0, EVERY, 1)]
+    rows += [(C, "cpu", *each, 64 if quick else EVERY, 1) for each in asked]
+    if device:
+        most, *others = (64,) if quick else WORLDS[device]
+        rows += [(WARP, device, *each, most, 1) for each in asked]
+        rows += [(WARP, device, *USUAL[0], worlds, 1) for worlds in others]
+        rows.append((WARP, device, *USUAL[0], *((64, 2) if quick else (EVERY, RUNS))))
+    case = Question(system=all_cases()[0].block, motion=all_cases()[0].motion)
+    sources = [f"mujoco:{row[2].partition(',')[0]}" if row[2] else EXACT for row in rows]
+    return [Job(labels=dict(zip(SAME, row, strict=True)), case=case, source=source)
+            for row, source in zip(rows, sources, strict=True)]  # fmt: skip
+
+
+def tabulate(rows: pd.DataFrame) -> Tables:
+    """Return errors and rates of each batch, the best rates at an error, and what differs."""
+    rows = rows.reindex(columns=[*dict.fromkeys([*rows.columns, *MEASURED, *SPREAD])])
+    plain = {}
+    for row in rows[(rows["backend"] == C) & rows["wall_s"].notna()].to_dict("records"):
+        peaks = plain[row["preset"], row["dt_ms"]] = np.full(EVERY, math.nan)
+        peaks[numbers_of(row["worlds"])] = unpacked(row["peaks"])
+    lines = []
+    for row in rows.to_dict("records"):
+        line = {str(name): row[name] for name in (*SAME, "message", *MEASURED)}
+        if not row["message"]:
+            numbers = numbers_of(min(row["worlds"], EVERY))
+            mine, other = unpacked(row["peaks"]), plain.get((row["preset"], row["dt_ms"]))
+            line |= _off(mine, exact_peaks()[numbers], "")
+            line |= {} if other is None else _off(mine, other[numbers], "c_")
+        lines.append(line)
+    batch = pd.DataFrame(lines)
+    best: list[dict[Any, Any]] = []
+    for worlds, group in batch.groupby(["backend", "device", "worlds"], sort=False):
+        for target in TARGETS:
+            kept = group[group["median_error"] <= target].nlargest(1, "cases_per_s")
+            kept = kept[["preset", "dt_ms", "cases_per_s", "median_error"]]
+            for found in kept.to_dict("records"):
+                named = dict(zip(["backend", "device", "worlds"], worlds, strict=True))
+                best.append({**named, "target": target, **found})
+    several = rows[(rows["worlds"] * rows["runs"] > EVERY) | (rows["runs"] > 1)]
+    return {"batch": batch, "rates": pd.DataFrame(best), "spread": several[[*SAME, *SPREAD]]}
+
+
+def _off(mine: FloatArray, right: FloatArray, whose: str) -> Row:
+    """Return how many outcomes are wrong, and errors where both rock."""
+    told = ~np.isnan(right)
+    words = [np.select([np.isnan(peaks), np.isinf(peaks)], ["failed", "overturned"], "rocked")
+             for peaks in (mine, right)]  # fmt: skip
+    kinds = kinds_of(words[0][told], mine[told], words[1][told], right[told])
+    both = np.isfinite(mine) & np.isfinite(right) & (right > 0.0)
+    levels = np.array([0.5, 0.9, 1.0])
+    sizes = np.quantile(np.abs(mine[both] / right[both] - 1.0), levels) if both.any() else (
+        levels * math.nan)  # fmt: skip
+    found = {kind: int((kinds == kind).sum()) for kind in KINDS}
+    found |= dict(zip(("median_error", "p90_error", "max_error"), sizes, strict=True))
+    return {f"{whose}{name}": value for name, value in found.items()}
+
+
+def finding(tables: Tables) -> str:
+    """Say what each way gives at a median error of 1 %, what has no result, and what repeats."""
+    best = tables["rates"].query("target == 0.01").sort_values("cases_per_s")
+    names = tables["batch"].groupby("device")["name"].first()
+    said = [
+        f"{NAMES[row['backend']]}{f' ({preset})' if (preset := row['preset']) else ''} gives"
+        f" {row['cases_per_s']:.3g} cases a second on {names[row['device']]}"
+        f" at a median error of {part(row['median_error'])}"
+        for row in best.drop_duplicates("backend", keep="last").to_dict("records")
+    ]
+    said += [
+        f"{NAMES[row['backend']]} ({row['preset']}, {row['dt_ms']:g} ms) has no result in"
+        f" {row[NO_ANSWER]:.0f} cases"
+        for row in tables["batch"].query(f"{NO_ANSWER} > 0").to_dict("records")
+    ]
+    said += [
+        f"in {row['runs']} identical runs {row['bits_differ']:.0f} of {row['worlds']} worlds differ"
+        f" by a bit, and a peak by up to {part(row['largest_spread'])}"
+        for row in tables["spread"].query("runs > 1").to_dict("records")
+    ]
+    return "; ".join(said) + "."
+
+
+def shown(tables: Tables) -> Tables:
+    """Return the three tables in short."""
+    columns = [*SAME, "cases_per_s", *KINDS, "median_error", "c_median_error"]
+    return {
+        "Errors and rates": tables["batch"].reindex(columns=columns),
+        "Most cases a second at a median error": tables["rates"],
+        "Worlds of one case that differ from its first": tables["spread"],
+    }
+
+
+def figures(tables: Tables) -> Figures:
+    """Draw the error against the rate."""
+    from studies.drawing.batch import draw_batch
+
+    return {"batch": draw_batch(tables["batch"])}
+
+
+STUDY = Study(
+    name="batch",
+    question="How many cases a second does a batch of worlds give, at which error?",
+    help="""The paper's 960 cases as worlds of MuJoCo Warp on a CPU or a GPU; MuJoCo in C beside it.
+
+All take equal steps on a base at rest. MJX is not asked: on an H100, 1024 worlds at 1 ms did not
+end within 160 s. Ten minutes without Warp; an hour with it on a CPU.""",
+    options=Options,
+    quick="64 cases, and one step of each preset.",
+    jobs=jobs,
+    measure=measure,
+    tabulate=tabulate,
+    finding=finding,
+    shown=shown,
+    figures=figures,
+    captions={"batch": "A line for each preset and way to step, from coarse steps to fine."},
+    alone=True,
+)
+command = STUDY.command()

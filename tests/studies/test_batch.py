@@ -1,0 +1,35 @@
+"""The paper's cases as one batch: what MuJoCo in C gives, and what two runs differ by."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies import batch, respond
+from studies.measures.batches import all_cases, measure, numbers_of, spread, unpacked
+
+
+def test_a_quick_batch_in_c_is_off_by_what_single_runs_are():
+    jobs = [job for job in batch.jobs((), True, batch.Options()) if job.labels["dt_ms"] in (0, 2)]
+    rows = [{**job.labels, "source": job.source, **measure(job)} for job in jobs]
+    _, line = batch.tabulate(pd.DataFrame(rows))["batch"].to_dict("records")
+    assert (line["fall_wrong"], line["rest_wrong"], line["no_answer"]) == (0, 0, 0)
+    assert line["median_error"] == pytest.approx(0.0888, abs=5e-5)
+    assert line["c_max_error"] == 0.0
+    for number, peak in list(zip(numbers_of(64), unpacked(rows[1]["peaks"]), strict=True))[::20]:
+        case = all_cases()[number]
+        single = respond(
+            "mujoco:default", case.block, case.motion, frame="base", step=2e-3 * case.block.p
+        )
+        assert single.peak_ratio == peak
+
+
+def test_bits_outcomes_and_peaks_that_differ_are_counted():
+    first = np.array([0.5, math.inf, math.nan, 0.25])
+    found = np.array([first, [0.5, 0.75, math.nan, 0.275]])
+    assert spread(found, first) == {
+        "bits_differ": 2,
+        "outcomes_differ": 1,
+        "largest_spread": pytest.approx(0.1),
+    }
