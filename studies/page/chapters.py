@@ -81,6 +81,7 @@ PUBLISHED_WITH = {
     "estimate": "--sources engines engines:tuned engines:default",
     "precision": "--sources exact rk45 dop853 radau lsoda rk4 average-acceleration housner "
     "modified onset-matched engines",
+    "batch": "--device cuda",
     "contact": "--engines pybullet mujoco pymunk box2d dart rapier drake newton physx",
     "contact-frames": "--engines pybullet mujoco pymunk box2d dart",
     "stability": "--sources exact rk4 average-acceleration dop853 radau engines engines:tuned "
@@ -120,7 +121,10 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
             weaker="Too few random cases to bound any factor.",
         ),
     ),
-    "Error against run time": (Part("precision", "precision"),),
+    "Error against run time": (
+        Part("precision", "precision"),
+        Part("batch", "batch", weaker="64 cases of 960; no GPU."),
+    ),
     "Contact models": (
         Part("advice", "advise", quick=("--quick", "--engines", "pybullet", "mujoco")),
         Part("contact", "contact"),
