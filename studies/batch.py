@@ -18,6 +18,7 @@ from studies.cases.refusal import BadInputError
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import part
 from studies.kit.study import Figures, Study, Tables
+from studies.kit.tables import unpacked
 from studies.measures.batches import (
     EVERY,
     EXACT,
@@ -30,7 +31,6 @@ from studies.measures.batches import (
     exact_peaks,
     measure,
     numbers_of,
-    unpacked,
 )  # fmt: skip
 from studies.measures.wrongness import KINDS, NO_ANSWER, kinds_of
 

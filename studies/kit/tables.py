@@ -5,11 +5,14 @@ from __future__ import annotations
 import gzip
 import hashlib
 import os
+from base64 import b64decode, b64encode
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 PACKED = ".gz"
 
@@ -78,3 +81,13 @@ def digest(path: Path) -> str:
     """Return the SHA-256 of a table's text, packed or not."""
     with gzip.open(path) if path.suffix == PACKED else path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def packed(numbers: NDArray[np.float64]) -> str:
+    """Return numbers as text that a row can hold, to the bit."""
+    return b64encode(np.ascontiguousarray(numbers).tobytes()).decode()
+
+
+def unpacked(text: str) -> NDArray[np.float64]:
+    """Return the numbers that `packed` made text of, in one row."""
+    return np.frombuffer(b64decode(text), np.float64)

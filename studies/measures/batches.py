@@ -8,7 +8,6 @@ are found where the worlds are, as `engines.run.watch` finds them.
 from __future__ import annotations
 
 import math
-from base64 import b64decode, b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from functools import cache
@@ -32,6 +31,7 @@ from engines.world import FloatArray
 from studies.cases.paper import Case, sweep_cases
 from studies.kit.jobs import Job, Row
 from studies.kit.say import one_line
+from studies.kit.tables import packed
 from studies.sources.registry import run_engine, scene_of
 
 EXACT, C, WARP = "exact", "c", "warp"
@@ -76,11 +76,6 @@ def numbers_of(worlds: int) -> NDArray[np.intp]:
     return np.resize(((np.arange(most) + 0.45) * EVERY / most).astype(int), worlds)
 
 
-def unpacked(text: str) -> FloatArray:
-    """Return the numbers that a row holds as text, to the bit."""
-    return np.frombuffer(b64decode(text), np.float64)
-
-
 def measure(job: Job) -> Row:
     """Return what a batch gave: its rate, its faults, its peaks, and how far they repeat."""
     asked = job.labels
@@ -91,12 +86,12 @@ def measure(job: Job) -> Row:
     except Exception as error:
         return {"outcome": Outcome.FAILED.value, "message": one_line(error)}
     peaks = found.pop("peaks")
-    first = np.ascontiguousarray(peaks[0][:EVERY])
+    first = peaks[0][:EVERY]
     return {
         **{"outcome": "measured", "message": "", **found},
         "cases_per_s": asked["worlds"] / found["wall_s"],
         **spread(peaks, np.resize(first, asked["worlds"])),
-        "peaks": b64encode(first.tobytes()).decode(),
+        "peaks": packed(first),
     }
 
 

@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 
 from studies import batch, respond
-from studies.measures.batches import all_cases, measure, numbers_of, spread, unpacked
+from studies.kit.tables import unpacked
+from studies.measures.batches import all_cases, measure, numbers_of, spread
 
 
 def test_a_quick_batch_in_c_is_off_by_what_single_runs_are():

@@ -4,24 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import cast
 
 import numpy as np
 import pandas as pd
-from cyclopts import Parameter
 from numpy.typing import NDArray
 from scipy.stats import binomtest, mannwhitneyu
 
 from analytic.response import Outcome
 from studies.cases.refusal import BadInputError
-from studies.cases.rocks import CLONE, MESHES, TABLE, read_mesh, read_motion, read_tests
+from studies.cases.rocks import MESHES, TABLE, read_mesh, read_motion, read_tests
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import listed
-from studies.kit.study import Figures, Study, Tables
-from studies.measures.margins import GRID, block_of, measure
+from studies.kit.study import Figures, Tables
+from studies.measures.margins import GRID, block_of
 
 FITTED = {1: (0.11, 0.35), 2: (0.13, 0.25)}
 """The best block of the grid for each rock, which engines and the search for margins are given."""
@@ -33,25 +31,8 @@ MESH = ("mesh, weak side right", "mesh, weak side left", "mesh, weak side on bot
 SCORES = {"margin": -1.0, "pga_g": 1.0, "pgv_m_s": 1.0}  # with the sign of what falls
 
 
-@Parameter(name="*")
-@dataclass(frozen=True, kw_only=True)
-class Options:
-    """Which measurements.
-
-    Attributes
-    ----------
-    rocks
-        Folder of the shake-table tests: a clone of ZhiangChen/virtual_shake_robot_pybullet.
-    """
-
-    rocks: str | None = None
-
-
-def jobs(sources: Sequence[str], _: bool, options: Options) -> list[Job]:
+def jobs(sources: Sequence[str], folder: Path) -> list[Job]:
     """Return a job for each record and block, for each margin, and for each engine's block."""
-    if options.rocks is None:
-        raise BadInputError(f"--rocks is missing; it must name {CLONE}")
-    folder = Path(options.rocks)
     tests = cast("list[Row]", read_tests(folder).to_dict("records"))
     asked = [(0, "grid", block_of(*GRID[0]), EXACT)]
     for rock, mesh in MESHES.items():
@@ -70,7 +51,7 @@ def jobs(sources: Sequence[str], _: bool, options: Options) -> list[Job]:
             labels = {**test, "rock": rock, "block": name}
             found.append(Job(labels=labels, case=case, source=source))
     if not found:
-        raise BadInputError(f"--rocks is {options.rocks!r}; it holds no record of a test")
+        raise BadInputError(f"--rocks is {str(folder)!r}; it holds no record of a test")
     return found
 
 
@@ -166,27 +147,3 @@ def figures(tables: Tables) -> Figures:
     from studies.drawing.rocks import draw_rocks
 
     return {"rocks": draw_rocks(tables, SCORES, lost_by_all(tables))}
-
-
-STUDY = Study(
-    name="experiments",
-    question="Which rocks fall on a shake table, and who predicts it?",
-    help="""Two rocks of granite under recorded motions of a shake table, against what they did.
-
-The exact block, fitted and from the meshes; a rule that PGA and PGV exceed thresholds; the authors'
-model; and engines that are asked, with the fitted block. Ten minutes without engines. Writes
-rock-1.csv, rock-2.csv, shares.csv, areas.csv, findings.txt and a picture.""",
-    sources=(EXACT,),
-    options=Options,
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
-    captions={
-        "rocks": "What fell and what stood, over PGA and PGV, with the tests that all get wrong; "
-        "and how well the margin, PGA and PGV tell one from the other (ROC curves)."
-    },
-)
-command = STUDY.command()
