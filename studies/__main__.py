@@ -25,7 +25,7 @@ GROUPS = {
         "stability": "Stiff and extreme cases: which sources stay finite and right.",
         "overturning": "Which pulses overturn a block: maps, and where sources are wrong.",
         "scenes": "Frames, sliding blocks and a floor that moves.",
-        "experiments": "Rocks on a shake table: what fell, and who predicts it.",
+        "experiments": "Rocks on a shake table and tossed cubes: who predicts what they did.",
     },
     "Maintain": {
         "help": "The options that all studies share.",

@@ -145,8 +145,19 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         ),
     ),
     "Other scenes": (Part("scenes", "scenes"),),
-    "Rocks on a shake table": (
-        Part("experiments", "experiments", quick=(), needs=("--rocks", "FOLDER")),
+    "Real bodies": (
+        Part(
+            *("rocks", "experiments"),
+            "Which rocks fall on a shake table, and who predicts it?",
+            quick=(),
+            needs=("--rocks", "FOLDER"),
+        ),
+        Part(
+            *("cubes", "experiments"),
+            "Which engine predicts where a tossed cube goes?",
+            quick=(),
+            needs=("--cubes", "FOLDER"),
+        ),
     ),
 }
 """Title of a chapter -> its parts."""

@@ -114,4 +114,4 @@ def test_another_folder_is_refused(rocks, capsys, tmp_path, name, text, part):
     asked = ["experiments", "--out", tmp_path / "out"]
     refused(capsys, [*asked, "--rocks", rocks], "--rocks", part)
     refused(capsys, [*asked, "--rocks", tmp_path], "--rocks", "Results_Granite.xlsx")
-    refused(capsys, asked, "--rocks is missing")
+    refused(capsys, asked, "--rocks", "--cubes")
