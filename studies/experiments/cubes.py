@@ -162,8 +162,8 @@ AUTHORS = {
     "pybullet": (1783.7652890360182, 27.221707506471567, 0.1790210332261291, ""),
 }
 """Stiffness, damping, friction and cone of Acosta et al. (2022), mujoco_2022_02_23_15_29_10 and
-bullet_2022_02_22_00_36_10; PyBullet's friction is the product of board and cube (0.5). Their log of
-PyBullet says a loss of 0.271898, which this world gives with the inertia of a homogeneous box: their
+bullet_2022_02_22_00_36_10; PyBullet's friction is that of the board times 0.5. Their log of
+PyBullet says a loss of 0.271898, which this world gives with the inertia of a solid box: their
 loader takes that for the one of the file."""
 DRAWN, SEED = 32, 0
 RANGES = np.log([(300.0, 20.0, 0.1), (30_000.0, 300.0, 0.4)])
