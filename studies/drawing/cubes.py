@@ -10,7 +10,7 @@ from studies.drawing.styles import style_of, title_of
 def draw_cubes(lines: pd.DataFrame) -> Figure:
     """Draw the mean loss of each engine and settings, and the part of right faces."""
     drawing, grid = sheet((8.6, 0.9 + 0.36 * len(lines)), 1, 2, sharey=True)
-    names = [f"{title_of(line["engine"])}, {line['settings']}" for _, line in lines.iterrows()]
+    names = [f"{title_of(line['engine'])}, {line['settings']}" for _, line in lines.iterrows()]
     rows(grid[0], names)
     rows(grid[1], names)
     for axes, name in zip(grid, ("loss", "face"), strict=True):

@@ -13,14 +13,20 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.stats import binomtest, mannwhitneyu
 
+from analytic.block import RigidBlock
+from analytic.conditioning import scaled
 from analytic.response import Outcome
 from studies.cases.refusal import BadInputError
 from studies.cases.rocks import MESHES, TABLE, read_mesh, read_motion, read_tests
-from studies.kit.jobs import Job, Question, Row
+from studies.kit.jobs import Job, Question, Row, answer, unanswered
 from studies.kit.say import listed
 from studies.kit.study import Figures, Tables
-from studies.measures.margins import GRID, block_of
 
+GRID = list(product((0.07, 0.09, 0.11, 0.13, 0.15, 0.18, 0.22), (0.25, 0.35, 0.5, 0.7)))
+"""Slenderness [rad] and half diagonal [m] of blocks."""
+FACTORS = [2.0 ** (0.5 * step) for step in range(-4, 5)]
+"""Factors on a record, of which the margin is the least that overturns."""
+LETTERS = {Outcome.OVERTURNED: "f", Outcome.FAILED: "?"}
 FITTED = {1: (0.11, 0.35), 2: (0.13, 0.25)}
 """The best block of the grid for each rock, which engines and the search for margins are given."""
 FOLDS, SEED, PARTS = 5, 0, np.linspace(0.0, 1.0, 61)
@@ -53,6 +59,25 @@ def jobs(sources: Sequence[str], folder: Path) -> list[Job]:
     if not found:
         raise BadInputError(f"--rocks is {str(folder)!r}; it holds no record of a test")
     return found
+
+
+def block_of(alpha: float, radius: float) -> RigidBlock:
+    """Return a block by its slenderness [rad] and half diagonal [m]."""
+    return RigidBlock(width=2.0 * radius * math.sin(alpha), height=2.0 * radius * math.cos(alpha))
+
+
+def measure(job: Job) -> Row:
+    """Return an answer; or of GRID a letter a block, f for a fall; or the margin of the block."""
+    block, motion = job.case.system, job.case.motion
+    if job.labels["block"] == "grid":
+        found = [scaled(block_of(*sides), motion)(1.0, 1.0)[1] for sides in GRID]
+        letters = "".join(LETTERS.get(outcome, "-") for outcome in found)
+        return {**unanswered(""), "outcome": "found", "grid": letters}
+    if job.labels["block"] == "margin":
+        solve = scaled(block, motion)  # type: ignore[arg-type]  # it is a RigidBlock
+        falls = (each for each in FACTORS if solve(each, 1.0)[1] is Outcome.OVERTURNED)
+        return {**unanswered(""), "outcome": "found", "margin": next(falls, math.inf)}
+    return answer(job)
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:

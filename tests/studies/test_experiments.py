@@ -11,7 +11,7 @@ from commanding import refused
 from studies.__main__ import run
 from studies.cases.rocks import DT, FELL, MESHES, TABLE, TUNED, read_mesh, read_motion, read_tests
 from studies.experiments import STUDY, tabulate
-from studies.measures.margins import FACTORS, GRID
+from studies.experiments.rocks import FACTORS, GRID
 
 SPACE = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
 FACES = ["124", "143", "578", "586", "156", "162", "348", "387", "137", "175", "268", "284"]
