@@ -8,6 +8,8 @@ from matplotlib.figure import Figure
 
 from studies.drawing.facets import sheet
 
+LABELS = {"pga_g": "PGA", "pgv_m_s": "PGV"}
+
 
 def draw_rocks(
     tables: Mapping[str, pd.DataFrame], scores: Mapping[str, float], lost: pd.DataFrame
@@ -25,7 +27,7 @@ def draw_rocks(
             score = sign * table[name].to_numpy()
             taken = score[:, None] >= np.unique(score)[::-1]
             ends = ([0.0, *taken[kind].mean(axis=0)] for kind in (~fell, fell))
-            below.plot(*ends, label=name)
+            below.plot(*ends, label=LABELS.get(name, name))
         below.set(xlabel="false alarms, of those that stood", ylabel="found, of those that fell")
         for axes in (above, below):
             axes.legend(fontsize=8, frameon=False)
