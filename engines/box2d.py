@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import ASLEEP, factor, level, moving_base
 from engines.parts import NO_JAM, fall, imported, iterations_for, returned
 from engines.run.export import Notes, scaled
@@ -274,32 +274,22 @@ TUNED = Box2DSettings(
     floor="both",
 )
 
-DOCUMENTED = (
-    Citation("step", "world.Step(1.0 / 60, 6, 2)", "Box2D/examples/hello.py"),
-    Citation("sleeping", "on, the default", "b2BodyDef.allowSleep"),
-    Citation(
-        "friction",
-        "0.2, of a pair the root of the product; here 1",
-        "b2FixtureDef.friction, b2Contact.h",
-    ),
-    Citation(
-        "skin", "0.01 of a polygon, of which 0.005 is left alone", "b2_polygonRadius, b2_linearSlop"
-    ),
-    Citation("warm starting", "on, the default", "b2World.warmStarting"),
-    Citation(
-        "without effect",
-        "continuousPhysics on; b2_velocityThreshold 1 below which nothing bounces; no damping; "
-        "speeds up to b2_maxTranslation 2 a step",
-        "b2World, b2BodyDef, b2Settings.h",
-    ),
-    Citation("floor", "a kinematic body, by its linearVelocity", "examples/body_types.py"),
-)
+DOCUMENTED = citations("""
+step | world.Step(1.0 / 60, 6, 2) | Box2D/examples/hello.py
+sleeping | on, the default | b2BodyDef.allowSleep
+friction | 0.2, of a pair the root of the product; here 1 | b2FixtureDef.friction, b2Contact.h
+skin | 0.01 of a polygon, of which 0.005 is left alone | b2_polygonRadius, b2_linearSlop
+warm starting | on, the default | b2World.warmStarting
+without effect | continuousPhysics on; b2_velocityThreshold 1 below which nothing bounces; no
+    damping; speeds up to b2_maxTranslation 2 a step | b2World, b2BodyDef, b2Settings.h
+floor | a kinematic body, by its linearVelocity | examples/body_types.py
+""")
 """What its documentation sets, in pybox2d 2.3.10."""
 
-RECOMMENDED = (
-    Citation("iterations", "8 for velocity and 3 for position", "manual, Hello Box2D"),
-    Citation("step", "1/60 s; no smaller one for fewer iterations", "manual, Dynamics Module"),
-)
+RECOMMENDED = citations("""
+iterations | 8 for velocity and 3 for position | manual, Hello Box2D
+step | 1/60 s; no smaller one for fewer iterations | manual, Dynamics Module
+""")
 """What it recommends for accurate contact."""
 
 FACTORS = (
@@ -317,14 +307,7 @@ FACTORS = (
     moving_base("both", "velocity", "position"),
 )
 
-NAIVE = Preset(
-    name="default",
-    settings=Box2DSettings(),
-    step_s=1.0 / 60.0,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.2},
-)
+NAIVE = default(Box2DSettings(), 1.0 / 60.0, DOCUMENTED, friction=0.2)
 
 ENGINE = Engine(
     name="box2d",
@@ -341,17 +324,11 @@ ENGINE = Engine(
             position_iterations=3,
         ),
         Preset(name="tuned", settings=TUNED, step=1e-3, helped_by={Help.MARGIN: {"margin": None}}),
-        Preset(
-            name="landing",
-            settings=replace(TUNED, reflection=True),
-            stepping=Stepping.LANDING,
+        landing(
+            replace(TUNED, reflection=True),
+            {Help.REFLECTION: {"reflection": False}, Help.MARGIN: {"margin": None}},
             stacked={"sweeps": 200.0},
             stacks=Box2DStacks,
-            helped_by={
-                Help.STEPS: None,
-                Help.REFLECTION: {"reflection": False},
-                Help.MARGIN: {"margin": None},
-            },
         ),
     ),
     precision=Precision.SINGLE,

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import fall, imported, returned
 from engines.run.export import Notes, scaled
@@ -337,48 +337,34 @@ MASSLESS = "friction without mass: the Dantzig solver fails, and PGS answers in 
 UNFINISHED = "an iteration that may end before friction holds: a pivot slides in some cases"
 UNIT_INERTIA = "the mass alone leaves the moments of inertia at 1 kg m2"
 
-DOCUMENTED = (
-    Citation("step", "0.001 s, the default", "World.getTimeStep"),
-    Citation("solver", "Dantzig's, the default", "ConstraintSolver.getBoxedLcpSolver"),
-    Citation(
-        "solver",
-        "where it fails PGS, 30 iterations, from the last step's impulses",
-        "dart pull request 1265; PgsBoxedLcpSolverOption; ContactWarmStartCache.hpp",
-    ),
-    Citation("collision", "FCL's, the default", "ConstraintSolver.getCollisionDetector"),
-    Citation(
-        "contact",
-        "of a depth 0.01 a step is corrected, by at most 0.001 a second",
-        "ContactConstraint.cpp; split impulse is off",
-    ),
-    Citation("sleeping", "on, the default since 6.19", "World.getDeactivationOptions"),
-    Citation(
-        "sleeping",
-        "after 0.5 s below 0.01 m/s and 0.05 rad/s; commands are said to wake",
-        "DeactivationOptions.hpp, dart pull request 2920",
-    ),
-    Citation(
-        "friction", "1, the default, of a pair the smaller", "DynamicsAspect.getFrictionCoeff"
-    ),
-    Citation(
-        "floor",
-        "a joint of ActuatorType VELOCITY, setCommands; or SERVO, a dynamic one",
-        "dart/dynamics/detail/JointAspect.hpp, ActuatorType",
-    ),
-)
+DOCUMENTED = citations("""
+step | 0.001 s, the default | World.getTimeStep
+solver | Dantzig's, the default | ConstraintSolver.getBoxedLcpSolver
+solver | where it fails PGS, 30 iterations, from the last step's impulses | dart pull request
+    1265; PgsBoxedLcpSolverOption; ContactWarmStartCache.hpp
+collision | FCL's, the default | ConstraintSolver.getCollisionDetector
+contact | of a depth 0.01 a step is corrected, by at most 0.001 a second | ContactConstraint.cpp;
+    split impulse is off
+sleeping | on, the default since 6.19 | World.getDeactivationOptions
+sleeping | after 0.5 s below 0.01 m/s and 0.05 rad/s; commands are said to wake |
+    DeactivationOptions.hpp, dart pull request 2920
+friction | 1, the default, of a pair the smaller | DynamicsAspect.getFrictionCoeff
+floor | a joint of ActuatorType VELOCITY, setCommands; or SERVO, a dynamic one |
+    dart/dynamics/detail/JointAspect.hpp, ActuatorType
+""")
 """What its documentation sets, in dartpy 6.20.0."""
 
-RECOMMENDED = (
-    Citation("sleeping", "off, for who needs the path of before", "dart pull requests 2920, 3086"),
-    Citation("solver", "Dantzig's, the default, which is more precise", "dart issue 961"),
-)
+RECOMMENDED = citations("""
+sleeping | off, for who needs the path of before | dart pull requests 2920, 3086
+solver | Dantzig's, the default, which is more precise | dart issue 961
+""")
 """What it recommends: no page of it is on stiff contact."""
 
-PASTED = (
-    Citation("solver", "NsgsFrictionSolver: with Dantzig's a pivot slides", "measured here"),
-    Citation("inertia", "set beside the mass, which leaves it at 1 kg m²", "measured here"),
-    Citation("sleeping", "off, for who needs the path of before", "dart pull requests 2920, 3086"),
-)
+PASTED = citations("""
+solver | NsgsFrictionSolver: with Dantzig's a pivot slides | measured here
+inertia | set beside the mass, which leaves it at 1 kg m² | measured here
+sleeping | off, for who needs the path of before | dart pull requests 2920, 3086
+""")
 
 FACTORS = (
     factor("aside", level("no", trap=MASSLESS, aside=False), name="base in the plane"),
@@ -414,11 +400,8 @@ FACTORS = (
     factor("friction"),
     moving_base("both", "velocity", "servo", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default", settings=DartSettings(), step_s=1e-3, documented=DOCUMENTED, frame="world"
-)
+NAIVE = default(DartSettings(), 1e-3, DOCUMENTED)
 
 ENGINE = Engine(
     name="dart",
@@ -432,16 +415,10 @@ ENGINE = Engine(
         NAIVE.recommended(*RECOMMENDED, sleeping=False),
         NAIVE.pasted(*PASTED, solver="NSGS", sleeping=False),
         Preset(name="tuned", settings=TUNED, step=5e-4),
-        Preset(
-            name="landing",
-            settings=replace(TUNED, margin=0.5, reflection=True),
-            stepping=Stepping.LANDING,
+        landing(
+            replace(TUNED, margin=0.5, reflection=True),
+            {Help.REFLECTION: {"reflection": False}, Help.MARGIN: {"margin": None}},
             stacked={"margin": 30.0, "unit": 1e7},
-            helped_by={
-                Help.STEPS: None,
-                Help.REFLECTION: {"reflection": False},
-                Help.MARGIN: {"margin": None},
-            },
         ),
     ),
     rest_factor=1.0,

@@ -3,6 +3,7 @@
 import enum
 import importlib.util
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
@@ -30,6 +31,12 @@ class Citation(NamedTuple):
     setting: str
     value: str
     where: str
+
+
+def citations(table: str) -> tuple[Citation, ...]:
+    """Read "setting | value | where", one a line; a line that begins with blanks goes on."""
+    rows = re.split(r"\n(?! )", table.strip("\n"))
+    return tuple(Citation(*" ".join(row.split()).split(" | ")) for row in rows)
 
 
 Builder = Callable[[Scene, Any, float], World]
@@ -167,6 +174,31 @@ class Preset:
         Between two looks at the block, where the engine chooses its own steps.
         """
         return self.step if self.stepping is Stepping.FIXED else 1.0 / ACCURACIES[accuracy]
+
+
+def default(settings: Any, step_s: float, documented: tuple[Citation, ...], **own: float) -> Preset:
+    """Return a library as its documentation shows it, and its own settings where others are."""
+    return Preset(
+        name="default",
+        settings=settings,
+        step_s=step_s,
+        documented=documented,
+        frame="world",
+        own=own,
+    )
+
+
+def landing(
+    settings: Any, helped_by: Mapping[Help, Mapping[str, Any]] | None = None, **options: Any
+) -> Preset:
+    """Return steps that land, and what helps besides; options are of `Preset`."""
+    return Preset(
+        name="landing",
+        settings=settings,
+        stepping=Stepping.LANDING,
+        helped_by={Help.STEPS: None, **(helped_by or {})},
+        **options,
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

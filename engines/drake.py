@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import Citation, Engine, Preset, Stepping
+from engines.declaration import Engine, Preset, Stepping, citations, default
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported, yaw_of
 from engines.run.export import Notes
@@ -404,61 +404,39 @@ def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
 
 CONFIG = "MultibodyPlantConfig, drake 1.51.1"
 BOTH_CONFIGS = "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1"
-LAGGING = "discrete_contact_approximation = 'lagged', stiction_tolerance = 0.0001"
 
-DOCUMENTED = (
-    Citation("step", "time_step = 0.001", CONFIG),
-    Citation("solver", LAGGING, CONFIG),
-    Citation(
-        "contact",
-        "contact_model = 'hydroelastic_with_fallback', compliance_type = 'undefined', that is "
-        "points; point_stiffness = 1000000, hunt_crossley_dissipation = 50",
-        BOTH_CONFIGS,
-    ),
-    Citation(
-        "shapes",
-        "the table is a <box> with no properties of contact",
-        "tutorials/authoring_multibody_simulation.ipynb, drake 1.51.1",
-    ),
-    Citation(
-        "friction",
-        "dynamic_friction = static_friction = 0.5, of a pair 2 a b/(a + b); 1.0 is used",
-        "DefaultProximityProperties, drake 1.51.1",
-    ),
-    Citation(
-        "without effect",
-        "penetration_allowance = 0.001, sap_near_rigid_threshold = 1, relaxation_time = 0.1, "
-        "contact_surface_representation = 'polygon'",
-        BOTH_CONFIGS,
-    ),
-    Citation(
-        "floor",
-        "'infinite PD gains for 1-dof joints': a prismatic joint, set_controller_gains, "
-        "get_desired_state_input_port",
-        "RobotLocomotion/drake issue 20496; MultibodyPlant, 'Using PD controlled actuators', "
-        "drake 1.51.1",
-    ),
-    Citation(
-        "gains",
-        "{1e4, 1} on a rail that carries 0.1 kg; of 'infinite' ones there is no example: 1e8 times "
-        "those are used, and a floor of the block's mass",
-        "examples/multibody/deformable/deformable_torus.cc",
-    ),
-)
+DOCUMENTED = citations(f"""
+step | time_step = 0.001 | {CONFIG}
+solver | discrete_contact_approximation = 'lagged', stiction_tolerance = 0.0001 | {CONFIG}
+contact | contact_model = 'hydroelastic_with_fallback', compliance_type = 'undefined', that is
+    points; point_stiffness = 1000000, hunt_crossley_dissipation = 50 | {BOTH_CONFIGS}
+shapes | the table is a <box> with no properties of contact |
+    tutorials/authoring_multibody_simulation.ipynb, drake 1.51.1
+friction | dynamic_friction = static_friction = 0.5, of a pair 2 a b/(a + b); 1.0 is used |
+    DefaultProximityProperties, drake 1.51.1
+without effect | penetration_allowance = 0.001, sap_near_rigid_threshold = 1, relaxation_time =
+    0.1, contact_surface_representation = 'polygon' | {BOTH_CONFIGS}
+floor | 'infinite PD gains for 1-dof joints': a prismatic joint, set_controller_gains,
+    get_desired_state_input_port | RobotLocomotion/drake issue 20496; MultibodyPlant, 'Using PD
+    controlled actuators', drake 1.51.1
+gains | {{1e4, 1}} on a rail that carries 0.1 kg; of 'infinite' ones there is no example: 1e8
+    times those are used, and a floor of the block's mass |
+    examples/multibody/deformable/deformable_torus.cc
+""")
 """What the preset "default" is documented by."""
 
-RECOMMENDED = (
-    Citation("solver", "similar, where impacts are to be resolved", "DiscreteContactApproximation"),
-    Citation("shapes", "small spheres at the corners", "contact_model_doxygen.h, Point contact"),
-    Citation("contact", "stiffness by the depth under the weight: 1e7 N/m", "the same, Stiffness"),
-)
+RECOMMENDED = citations("""
+solver | similar, where impacts are to be resolved | DiscreteContactApproximation
+shapes | small spheres at the corners | contact_model_doxygen.h, Point contact
+contact | stiffness by the depth under the weight: 1e7 N/m | the same, Stiffness
+""")
 """What it recommends for rigid contact; the stiffness is for 375 kg, and follows the mass."""
 
-PASTED = (
-    Citation("solver", "similar, where impacts are to be resolved", "DiscreteContactApproximation"),
-    Citation("shapes", "small spheres at the corners", "contact_model_doxygen.h, Point contact"),
-    Citation("contact", "4 m/dt² a contact, 8 m/dt² of each of its two bodies", "measured here"),
-)
+PASTED = citations("""
+solver | similar, where impacts are to be resolved | DiscreteContactApproximation
+shapes | small spheres at the corners | contact_model_doxygen.h, Point contact
+contact | 4 m/dt² a contact, 8 m/dt² of each of its two bodies | measured here
+""")
 
 TUNED = DrakeSettings(
     geometry="corners",
@@ -496,16 +474,8 @@ FACTORS = (
     factor("friction", level("1.3", friction=NO_JAM)),
     moving_base("drive", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default",
-    settings=DrakeSettings(),
-    step_s=1e-3,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.5},
-)
+NAIVE = default(DrakeSettings(), 1e-3, DOCUMENTED, friction=0.5)
 
 ENGINE = Engine(
     name="drake",

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engines.declaration import Citation, Engine, Precision, Preset
+from engines.declaration import Engine, Precision, Preset, citations, default
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported, silence, yaw_of
 from engines.run.export import Notes
@@ -338,37 +338,27 @@ def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
 DOMINOES = "newton/examples/contacts/example_domino_spiral.py, newton 1.8.0"
 BELT = "newton/examples/basic/example_basic_conveyor.py, newton 1.8.0"
 
-DOCUMENTED = (
-    Citation("step", "fps = 100, sim_substeps = 10", BELT),
-    Citation("solver", "newton.solvers.SolverXPBD(model), the example's --solver by default", BELT),
-    Citation("iterations", "Defaults to 2.", "SolverXPBD, newton 1.8.0"),
-    Citation(
-        "contact",
-        "rigid_contact_relaxation 0.8, rigid_contact_con_weighting True, enable_restitution False",
-        "SolverXPBD, newton 1.8.0",
-    ),
-    Citation("damping", "angular_damping: Defaults to 0.0.", "SolverXPBD, newton 1.8.0"),
-    Citation(
-        "friction",
-        "mu: float = 1.0, of a pair the mean",
-        "ModelBuilder.ShapeConfig; xpbd/kernels.py, newton 1.8.0",
-    ),
-    Citation("gap", "contacts are made from rigid_gap 0.1 away", "ModelBuilder, newton 1.8.0"),
-    Citation(
-        "floor",
-        "is_kinematic=True on a joint; joint_q and joint_qd in each substep, then "
-        "eval_fk(..., body_flag_filter=BodyFlags.KINEMATIC)",
-        BELT,
-    ),
-    Citation("shapes", "a box on add_shape_plane(body=belt), where the solver is Kamino", BELT),
-)
+DOCUMENTED = citations(f"""
+step | fps = 100, sim_substeps = 10 | {BELT}
+solver | newton.solvers.SolverXPBD(model), the example's --solver by default | {BELT}
+iterations | Defaults to 2. | SolverXPBD, newton 1.8.0
+contact | rigid_contact_relaxation 0.8, rigid_contact_con_weighting True, enable_restitution False
+    | SolverXPBD, newton 1.8.0
+damping | angular_damping: Defaults to 0.0. | SolverXPBD, newton 1.8.0
+friction | mu: float = 1.0, of a pair the mean | ModelBuilder.ShapeConfig; xpbd/kernels.py, newton
+    1.8.0
+gap | contacts are made from rigid_gap 0.1 away | ModelBuilder, newton 1.8.0
+floor | is_kinematic=True on a joint; joint_q and joint_qd in each substep, then eval_fk(...,
+    body_flag_filter=BodyFlags.KINEMATIC) | {BELT}
+shapes | a box on add_shape_plane(body=belt), where the solver is Kamino | {BELT}
+""")
 """What the preset "default" is documented by: the example in which a floor moves."""
 
-RECOMMENDED = (
-    Citation("step", "a smaller dt first, before all else of a solver", "simulation_tuning.rst"),
-    Citation("step", "60 fps of 10 substeps, free dominoes", DOMINOES),
-    Citation("iterations", "20, free dominoes; enable_restitution, which is left off", DOMINOES),
-)
+RECOMMENDED = citations(f"""
+step | a smaller dt first, before all else of a solver | simulation_tuning.rst
+step | 60 fps of 10 substeps, free dominoes | {DOMINOES}
+iterations | 20, free dominoes; enable_restitution, which is left off | {DOMINOES}
+""")
 """What it recommends for less penetration: a smaller step, then more iterations."""
 
 TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)
@@ -388,11 +378,8 @@ FACTORS = (
     factor("friction"),
     moving_base("velocity", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default", settings=NewtonSettings(), step_s=1e-3, documented=DOCUMENTED, frame="world"
-)
+NAIVE = default(NewtonSettings(), 1e-3, DOCUMENTED)
 
 ENGINE = Engine(
     name="newton",

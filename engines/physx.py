@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported, returned, yaw_of
 from engines.run.export import Notes, scaled
@@ -330,45 +330,39 @@ LANDING = replace(TUNED, **EVERY, contact_offset=None, reflection=True, floor="b
 SHAPES = "SAPIEN 3.0.3, sapien/pysapien/physx.pyi"
 TUNING = "Isaac Lab 3.0.0, concepts/solver-tuning/tune_physx.rst"
 
-DOCUMENTED = (
-    Citation("step", "1/100 s", "SAPIEN 3.0.3, sapien/example/hello_world.py"),
-    Citation(
-        "iterations", "10 of position, 1 of velocity, by default", f"{SHAPES}: set_body_config"
-    ),
-    Citation("solver", "enable_tgs = True, the default", f"{SHAPES}: set_scene_config"),
-    Citation("bounce_threshold", "2.0, the default", f"{SHAPES}: set_scene_config"),
-    Citation("sleeping", "sleep_threshold = 0.005, the default", f"{SHAPES}: set_body_config"),
-    Citation("contact_offset", "0.01, the default", f"{SHAPES}: set_shape_config"),
-    Citation("contact_offset", "rest_offset 0, the default", f"{SHAPES}: set_shape_config"),
-    Citation("manifolds", "enable_pcm = True, the default", f"{SHAPES}: set_scene_config"),
-    Citation("damping", "angular 0.05, linear 0", f"{SHAPES}: PhysxRigidDynamicComponent"),
-    Citation("restitution", "0.1, the default", "physx.get_default_material()"),
-    Citation("friction", "0.3, of a pair the mean; here 1", "physx.get_default_material()"),
-    Citation(
-        "without effect",
-        "enable_friction_every_iteration, no enable_ccd, max_angular_velocity 100, "
-        "max_depenetration_velocity 1e32",
-        f"{SHAPES}: PhysxSceneConfig, PhysxRigidDynamicComponent",
-    ),
-    Citation("floor", "kinematic, set_kinematic_target", f"{SHAPES}: PhysxRigidDynamicComponent"),
-)
+DOCUMENTED = citations(f"""
+step | 1/100 s | SAPIEN 3.0.3, sapien/example/hello_world.py
+iterations | 10 of position, 1 of velocity, by default | {SHAPES}: set_body_config
+solver | enable_tgs = True, the default | {SHAPES}: set_scene_config
+bounce_threshold | 2.0, the default | {SHAPES}: set_scene_config
+sleeping | sleep_threshold = 0.005, the default | {SHAPES}: set_body_config
+contact_offset | 0.01, the default | {SHAPES}: set_shape_config
+contact_offset | rest_offset 0, the default | {SHAPES}: set_shape_config
+manifolds | enable_pcm = True, the default | {SHAPES}: set_scene_config
+damping | angular 0.05, linear 0 | {SHAPES}: PhysxRigidDynamicComponent
+restitution | 0.1, the default | physx.get_default_material()
+friction | 0.3, of a pair the mean; here 1 | physx.get_default_material()
+without effect | enable_friction_every_iteration, no enable_ccd, max_angular_velocity 100,
+    max_depenetration_velocity 1e32 | {SHAPES}: PhysxSceneConfig, PhysxRigidDynamicComponent
+floor | kinematic, set_kinematic_target | {SHAPES}: PhysxRigidDynamicComponent
+""")
 """What its documentation sets."""
 
-RECOMMENDED = (
-    Citation("step", "dt = 1/120 s, where to start: 'not a universal recommendation'", TUNING),
-    Citation("iterations", "at most 64 of position and 4 of velocity: all of them here", TUNING),
-    Citation("solver", "TGS, the first candidate", TUNING),
-    Citation("bounce_threshold", "0.2 m/s", TUNING),
-)
+RECOMMENDED = citations(f"""
+step | dt = 1/120 s, where to start: 'not a universal recommendation' | {TUNING}
+iterations | at most 64 of position and 4 of velocity: all of them here | {TUNING}
+solver | TGS, the first candidate | {TUNING}
+bounce_threshold | 0.2 m/s | {TUNING}
+""")
 """What those who maintain PhysX recommend for contact."""
 
-PASTED = (
-    Citation("solver", "PGS", "measured here"),
-    Citation("iterations", "50 of position", "measured here"),
-    Citation("contact_offset", "1e-4: of 0.01 a corner is held before it strikes", "measured here"),
-    Citation("shapes", "four balls at the lower corners, the body's own inertia", "measured here"),
-    Citation("damping, restitution, sleeping", "none", "measured here"),
-)
+PASTED = citations("""
+solver | PGS | measured here
+iterations | 50 of position | measured here
+contact_offset | 1e-4: of 0.01 a corner is held before it strikes | measured here
+shapes | four balls at the lower corners, the body's own inertia | measured here
+damping, restitution, sleeping | none | measured here
+""")
 
 STUCK = "of a slow move nothing is left in single precision: TGS adds it to the place in parts"
 SMOOTH = "SAPIEN's own friction: the block slides before it rocks"
@@ -393,16 +387,8 @@ FACTORS = (
     factor("friction", level("0.3, SAPIEN's own", (DEFAULT,), SMOOTH, friction=0.3)),
     moving_base("target", "belt", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default",
-    settings=PhysxSettings(),
-    step_s=0.01,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.3},
-)
+NAIVE = default(PhysxSettings(), 0.01, DOCUMENTED, friction=0.3)
 
 ENGINE = Engine(
     name="physx",
@@ -432,12 +418,10 @@ ENGINE = Engine(
             sleeping=False,
         ),
         Preset(name="tuned", settings=TUNED, step=1e-3),
-        Preset(
-            name="landing",
-            settings=LANDING,
-            stepping=Stepping.LANDING,
+        landing(
+            LANDING,
+            {Help.REFLECTION: {"reflection": False}},
             stacked=None,
-            helped_by={Help.STEPS: None, Help.REFLECTION: {"reflection": False}},
         ),
     ),
     precision=Precision.SINGLE,

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import factor, level, moving_base
 from engines.parts import NO_JAM, fall, imported, iterations_for, returned
 from engines.run.export import Notes, constant, scaled
@@ -260,35 +260,26 @@ TUNED = PymunkSettings(
     geometry="corners", friction=NO_JAM, sweeps=20.0, bias=0.0, margin=10.0, floor="both"
 )
 
-DOCUMENTED = (
-    Citation("step", "space.step(0.02)", "README, the first example"),
-    Citation("iterations", "10, the default", "Space.iterations"),
-    Citation("collision_slop", "0.1, the default", "Space.collision_slop"),
-    Citation("sleeping", "off: sleep_time_threshold is inf", "Space.sleep_time_threshold"),
-    Citation("friction", "0, of a pair the product; here 1", "Shape.friction, cpArbiter.c"),
-    Citation("warm starting", "all of the last step's impulses", "cpSpaceStep.c"),
-    Citation(
-        "collision_persistence",
-        "3 steps; with 0 nothing is left to start from, and a block slides",
-        "cpSpace.c",
-    ),
-    Citation(
-        "without effect",
-        "collision_bias 0.9^60 a second, of what exceeds the slop; damping 1; elasticity 0",
-        "cpSpace.c, cpShape.c",
-    ),
-    Citation("floor", "Body.KINEMATIC, by its velocity", "Body.KINEMATIC, on platforms"),
-)
+DOCUMENTED = citations("""
+step | space.step(0.02) | README, the first example
+iterations | 10, the default | Space.iterations
+collision_slop | 0.1, the default | Space.collision_slop
+sleeping | off: sleep_time_threshold is inf | Space.sleep_time_threshold
+friction | 0, of a pair the product; here 1 | Shape.friction, cpArbiter.c
+warm starting | all of the last step's impulses | cpSpaceStep.c
+collision_persistence | 3 steps; with 0 nothing is left to start from, and a block slides |
+    cpSpace.c
+without effect | collision_bias 0.9^60 a second, of what exceeds the slop; damping 1; elasticity 0
+    | cpSpace.c, cpShape.c
+floor | Body.KINEMATIC, by its velocity | Body.KINEMATIC, on platforms
+""")
 """What its documentation sets, in pymunk 7.3.1."""
 
-RECOMMENDED = (
-    Citation("step", "0.002 s, a tenth of 0.02", "Space.step: multiple calls with a smaller dt"),
-    Citation(
-        "collision_slop",
-        "as high as you can without noticeable overlapping: here 1 mm",
-        "Space.collision_slop",
-    ),
-)
+RECOMMENDED = citations("""
+step | 0.002 s, a tenth of 0.02 | Space.step: multiple calls with a smaller dt
+collision_slop | as high as you can without noticeable overlapping: here 1 mm |
+    Space.collision_slop
+""")
 """What it recommends for stable and accurate contact."""
 
 FACTORS = (
@@ -303,14 +294,7 @@ FACTORS = (
     moving_base("both", "velocity", "position"),
 )
 
-NAIVE = Preset(
-    name="default",
-    settings=PymunkSettings(),
-    step_s=0.02,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.0},
-)
+NAIVE = default(PymunkSettings(), 0.02, DOCUMENTED, friction=0.0)
 
 ENGINE = Engine(
     name="pymunk",
@@ -325,17 +309,14 @@ ENGINE = Engine(
         Preset(
             name="tuned", settings=TUNED, step=2.5e-4, helped_by={Help.MARGIN: {"margin": None}}
         ),
-        Preset(
-            name="landing",
-            settings=replace(TUNED, positions=True, reflection=True),
-            stepping=Stepping.LANDING,
-            stacked={"sweeps": 400.0},  # the heavier what rests on others, the slower they converge
-            helped_by={
-                Help.STEPS: None,
+        landing(
+            replace(TUNED, positions=True, reflection=True),
+            {
                 Help.POSITIONS: {"positions": False},
                 Help.REFLECTION: {"reflection": False},
                 Help.MARGIN: {"margin": None},
             },
+            stacked={"sweeps": 400.0},  # the heavier what rests on others, the slower they converge
         ),
     ),
     script=script,

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import ASLEEP, BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, imported, iterations_for, returned, yaw_of
 from engines.run.export import Notes, scaled
@@ -315,60 +315,40 @@ FRICTIONLESS = "a contact whose body cannot move aside has no friction at all"
 WITHOUT_NORMAL = "a ball whose centre rounds onto a surface has no contact there for a step"
 SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"
 
-DOCUMENTED = (
-    Citation("step", "1/60 s, the default", "IntegrationParameters.dt"),
-    Citation("substeps", "4, the default", "IntegrationParameters.num_solver_iterations"),
-    Citation("sleeping", "on, the default", "RigidBodyBuilder.can_sleep"),
-    Citation("friction", "0.5, of a pair the mean; here 1", "ColliderBuilder.friction"),
-    Citation(
-        "friction",
-        "simplified, one for all points; not solved where depths are corrected",
-        "IntegrationParameters.friction_model, friction_in_bias_pass",
-    ),
-    Citation(
-        "contact",
-        "a spring of 30 Hz, damping ratio 10; 60 Hz on what does not move",
-        "IntegrationParameters.contact_softness, static_contact_softness",
-    ),
-    Citation(
-        "contact",
-        "from 0.02 away, and kept while bodies move by less than 0.05",
-        "IntegrationParameters.normalized_prediction_distance, contact_recycling",
-    ),
-    Citation(
-        "iterations",
-        "1 a substep and 1 of stabilization, from all of the last impulses",
-        "IntegrationParameters.num_internal_pgs_iterations, warmstart_coefficient",
-    ),
-    Citation(
-        "without effect",
-        "allowed_linear_error 0.005, max_corrective_velocity 3, max_linear_velocity 400, "
-        "max_ccd_substeps 1, contact_clustering; no damping",
-        "IntegrationParameters, RigidBodyBuilder",
-    ),
-    Citation(
-        "floor",
-        "kinematic_position_based, set_next_kinematic_translation; shown second: linvel of one "
-        "that is velocity-based",
-        "rapier.rs, user guide for Python, Common recipes: Making a moving platform",
-    ),
-)
+DOCUMENTED = citations("""
+step | 1/60 s, the default | IntegrationParameters.dt
+substeps | 4, the default | IntegrationParameters.num_solver_iterations
+sleeping | on, the default | RigidBodyBuilder.can_sleep
+friction | 0.5, of a pair the mean; here 1 | ColliderBuilder.friction
+friction | simplified, one for all points; not solved where depths are corrected |
+    IntegrationParameters.friction_model, friction_in_bias_pass
+contact | a spring of 30 Hz, damping ratio 10; 60 Hz on what does not move |
+    IntegrationParameters.contact_softness, static_contact_softness
+contact | from 0.02 away, and kept while bodies move by less than 0.05 |
+    IntegrationParameters.normalized_prediction_distance, contact_recycling
+iterations | 1 a substep and 1 of stabilization, from all of the last impulses |
+    IntegrationParameters.num_internal_pgs_iterations, warmstart_coefficient
+without effect | allowed_linear_error 0.005, max_corrective_velocity 3, max_linear_velocity 400,
+    max_ccd_substeps 1, contact_clustering; no damping | IntegrationParameters, RigidBodyBuilder
+floor | kinematic_position_based, set_next_kinematic_translation; shown second: linvel of one that
+    is velocity-based | rapier.rs, user guide for Python, Common recipes: Making a moving platform
+""")
 """What its documentation sets, in rapier3d 0.36.1."""
 
-RECOMMENDED = (
-    Citation("step", "1/120 s", "rapier.rs, user guide for Python, Integration parameters"),
-    Citation("substeps", "8, for a more accurate simulation", "the same page"),
-    Citation("friction_model", "Coulomb, the more accurate one", "integration_parameters.rs"),
-)
+RECOMMENDED = citations("""
+step | 1/120 s | rapier.rs, user guide for Python, Integration parameters
+substeps | 8, for a more accurate simulation | the same page
+friction_model | Coulomb, the more accurate one | integration_parameters.rs
+""")
 """What it recommends for accurate contact."""
 
-PASTED = (
-    Citation("substeps", "8, for a more accurate simulation", "rapier.rs, user guide for Python"),
-    Citation("contact", "1000 Hz, damping ratio 1, from 0.001 away", "measured here"),
-    Citation("contact", "neither taken from the last step nor started from it", "measured here"),
-    Citation("iterations", "none of stabilization", "measured here"),
-    Citation("sleeping", "off: gravity that turns wakes nothing", "measured here"),
-)
+PASTED = citations("""
+substeps | 8, for a more accurate simulation | rapier.rs, user guide for Python
+contact | 1000 Hz, damping ratio 1, from 0.001 away | measured here
+contact | neither taken from the last step nor started from it | measured here
+iterations | none of stabilization | measured here
+sleeping | off: gravity that turns wakes nothing | measured here
+""")
 
 FACTORS = (
     factor(
@@ -414,16 +394,8 @@ FACTORS = (
     ),
     moving_base("both", "target", "velocity", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default",
-    settings=RapierSettings(),
-    step_s=1.0 / 60.0,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.5},
-)
+NAIVE = default(RapierSettings(), 1.0 / 60.0, DOCUMENTED, friction=0.5)
 
 ENGINE = Engine(
     name="rapier",
@@ -447,12 +419,10 @@ ENGINE = Engine(
             sleeping=False,
         ),
         Preset(name="tuned", settings=TUNED, step=5e-4),
-        Preset(
-            name="landing",
-            settings=replace(TUNED, reflection=True),
-            stepping=Stepping.LANDING,
+        landing(
+            replace(TUNED, reflection=True),
+            {Help.REFLECTION: {"reflection": False}},
             stacked=None,
-            helped_by={Help.STEPS: None, Help.REFLECTION: {"reflection": False}},
         ),
     ),
     precision=Precision.SINGLE,

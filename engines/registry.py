@@ -10,7 +10,7 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 
-from engines.declaration import Builder, Engine, Help, Preset, Stepping
+from engines.declaration import Builder, Engine, Preset, landing
 from engines.settings import check, one_of, setting
 
 FURTHER = "ROCKING_ENGINES"
@@ -183,12 +183,6 @@ def undeclared(name: str, build: Builder, library: str) -> Engine:
     It holds one body, in the frame "base" alone, in equal steps and in ones that land.
     """
     fixed = Preset(name="tuned", title="equal steps", settings=PlainSettings(), step=1e-3)
-    landing = Preset(
-        name="landing",
-        settings=PlainSettings(),
-        stepping=Stepping.LANDING,
-        helped_by={Help.STEPS: None},
-    )
     return Engine(
         name=name,
         title=name,
@@ -196,6 +190,6 @@ def undeclared(name: str, build: Builder, library: str) -> Engine:
         packages=(),
         install=library,
         build=build,
-        presets=(fixed, landing),
+        presets=(fixed, landing(PlainSettings())),
         frames=("base",),
     )
