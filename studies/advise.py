@@ -37,7 +37,7 @@ from studies.kit.options import Running
 from studies.kit.say import aligned, as_text, duration, out_of, part
 from studies.kit.scene_options import Height, Width, block_of
 from studies.kit.store import check
-from studies.kit.study import Study, Tables
+from studies.kit.study import Study, Tables, stages
 from studies.kit.tables import table_in
 from studies.measures import published as known
 from studies.measures.costs import cheapest_kept
@@ -346,9 +346,6 @@ STUDY = Study(
     question="Which lines make a free box on a floor at rest rock accurately?",
     help="Random boxes of six degrees of freedom, at each library's own step and at 1 ms.",
     jobs=lambda *_: (),
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
     texts=("literal",),
+    **stages(measure, tabulate, finding, shown),
 )

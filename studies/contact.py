@@ -26,7 +26,7 @@ from studies.cases.variants import Variant, variants
 from studies.kit.arguments import Engines, one_of
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import out_of, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.differences import WELL_CONDITIONED, with_reference
 from studies.measures.history import SAMPLES, growth
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
@@ -247,17 +247,12 @@ failed variant is a result: the exit code is 1 only if a whole preset fails. Wri
 variants.csv, own-steps.csv, findings.txt and contact.png.""",
     options=Options,
     quick="Fewer cases and twice the step: less than a minute on 2 cores.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if not row["factor"] and not row["own_step"]],
     texts=("factor", "level", "trap"),
     captions={
         "contact": "Largest error of typical peaks with the tuned contact of each engine, and with "
         "one setting left at the library's default: the three settings that matter most.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

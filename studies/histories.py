@@ -16,7 +16,7 @@ from studies.kit.arguments import figures as some_figures
 from studies.kit.arguments import sources_option
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import capital, out_of
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.claims import claim, table_of
 from studies.measures.history import samples
 
@@ -157,16 +157,11 @@ STUDY = Study(
 Tests what the paper says about them. Takes a few seconds. Writes histories.csv, findings.csv,
 findings.txt, and a table and a picture for each figure.""",
     options=Options,
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "figure": "Rotation against time: a line for each source, a panel for each case.",
         "figure-2": "Rotation against time, and below it the difference of each solver from the "
         "exact solution; a pair of panels for each pulse.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -15,7 +15,7 @@ from analytic.motion import SinePulse
 from studies.cases.paper import PULSES, sweep_cases
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import out_of, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.claims import Finding, table_of
 from studies.measures.differences import posed_cases
 from studies.measures.wrongness import wrong_in
@@ -175,15 +175,10 @@ Compares all eight combinations of Housner's and the modified choices with the e
 the paper's cases and on a wider grid. Takes half a minute. Writes linearizations.csv,
 slenderness.csv, findings.csv, findings.txt and a picture.""",
     texts=("changed",),
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "linearizations": "Median error of the peak against H/B, for eight linearizations on two "
         "grids; colours stand for the onset, dashes for the frequency.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

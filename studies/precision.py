@@ -21,7 +21,7 @@ from engines.scene import free_rocking_window
 from studies.cases.paper import HISTORIES, Case, chosen_cases
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import duration, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.costs import EXACT, best_of, cheapest_below, exact_cost, joint, parts_of
 from studies.measures.presets import engine_of, look_of, uses_of
 from studies.measures.published import TARGETS
@@ -325,12 +325,6 @@ moving base. A compiled loop over mj_step takes MuJoCo's steps; Python takes all
 --jobs above 1 processes slow each other down. Takes about 10 minutes.""",
     sources=(*dict.fromkeys(method.source for method in PLAIN.values()), *core_sources()),
     quick="Fewer cases and settings, shorter timing: one and a half minutes.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if row["table"] == ALONG],
     captions={
         "precision": "Median error of the peak against run time, from coarse to fine settings: "
@@ -338,5 +332,6 @@ moving base. A compiled loop over mj_step takes MuJoCo's steps; Python takes all
         "steps. A cross marks a failed case or a wrong outcome."
     },
     alone=True,
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -28,7 +28,7 @@ from studies.cases.ways import WAYS, WITHOUT
 from studies.kit.arguments import Engines
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import listed, one_line, out_of
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.sources.registry import scene_of
 
 VARIED = {
@@ -238,16 +238,11 @@ Coefficients from 0 to 1 are set; the place of the impact within a step varies, 
 rate, height and slenderness. A column gives the share of its angular rate that the block keeps.
 Takes half a minute. Writes restitution.csv, corners.csv, findings.txt and a picture.""",
     options=Options,
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     texts=("way", "varied", "literal"),
     captions={
         "strikes": "Restitution of the striking corner against the coefficient that is set, with "
         "each engine's plainest and best settings. Bands: the range over all variations.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

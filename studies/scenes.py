@@ -21,7 +21,7 @@ from engines.run.run import LAG
 from studies.cases.drawn import calm_frames, slides
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import listed, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of, titled
 from studies.measures.wrongness import FALL, NO_ANSWER, WORDS, kind_of
 from studies.sources.registry import Source, core_sources, resolve
@@ -356,16 +356,11 @@ slides test settings that were not tuned on them. A row says what an engine cann
 hours.""",
     sources=core_sources("default", "tuned", "landing"),
     quick="One frame and one slide, two offsets of the steps, three random cases of each.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if row["reason"] != Reason.UNAVAILABLE.name],
     captions={
         "frame-time": "Each engine and preset on frames: the median and the largest error of the "
         "peak, the number of wrong outcomes, and the run time of a case.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

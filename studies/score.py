@@ -26,7 +26,7 @@ from studies.kit.options import Running
 from studies.kit.run import makers_of, run
 from studies.kit.say import duration, in_columns, one_line, out_of, part, say
 from studies.kit.store import FolderError, Store, check, engines_of, provenance_of
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.kit.tables import table_in
 from studies.measures import world
 from studies.measures.costs import joint
@@ -241,13 +241,8 @@ STUDY = Study(
     name="score",
     question="What does one engine predict, and did it get worse?",
     help="The paper's cases, errors along the step, extreme cases, slides and frames.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if row["part"] in (MODEL, SWEEP)],
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 
 

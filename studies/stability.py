@@ -11,7 +11,7 @@ import pandas as pd
 from studies.cases.extreme import Extreme, extremes
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import out_of, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.history import SAMPLES
 from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict, judge
@@ -141,16 +141,11 @@ minutes. Writes stability.csv, findings.txt and a picture.""",
         *("exact", "rk4", "average-acceleration", "dop853", "radau"),
         *core_sources("", "tuned", "default"),
     ),
-    jobs=jobs,
-    measure=measure,
     needed=without_result,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "stability": "Valid extreme cases that each engine predicts with each preset; below, the "
         "six cases on which presets differ most.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -15,7 +15,7 @@ from studies.kit.arguments import figures as some_figures
 from studies.kit.jobs import Job, Question
 from studies.kit.options import EffortOptions
 from studies.kit.say import capital, listed, out_of, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.claims import claim, table_of
 from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import engine_of, in_order, in_words, preset_of
@@ -241,11 +241,6 @@ default sources. To continue an interrupted run, give the same command again. Wr
 summary.csv, findings.csv, findings.txt and a picture of each figure.""",
     sources=("exact", "housner", "modified", "onset-matched", *core_sources()),
     options=Options,
-    jobs=jobs,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     rows="sweep",
     captions={
         "overview": "Each engine and preset: the median and the largest error of the peak, the "
@@ -253,5 +248,6 @@ summary.csv, findings.csv, findings.txt and a picture of each figure.""",
         "figure": "Largest rotation against the frequency of the pulse. Marks in the band: the "
         "source overturns the block. Lowest panels: the errors.",
     },
+    **stages(jobs, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -20,7 +20,7 @@ from studies.kit.arguments import Count, one_of
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.options import EffortOptions
 from studies.kit.say import out_of, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
 from studies.measures.halving import (
     BOUNDED,
@@ -190,14 +190,10 @@ same engine at half the step, and writes estimate.csv, estimates.csv and factors
     sources=core_sources(),
     options=Options,
     quick="100 random cases; with --halves 20, and 10 to test the factors.",
-    jobs=jobs,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "validate": "Errors of random cases in bands of the sensitivity S: for each engine the "
         "median, the middle half and the extremes.",
     },
+    **stages(jobs, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -30,7 +30,7 @@ from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
 from studies.kit.options import Running
 from studies.kit.say import capital, out_of
 from studies.kit.scene_options import window_of
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.presets import is_engine
 
 APART = 0.01
@@ -284,18 +284,13 @@ STUDY = Study(
     name="blocks",
     question="Which blocks of a list overturn under recorded ground motions, with what margin?",
     help="",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     texts=("name", "record", "record_digest", "source", "outcome", "no_margin"),
     captions={
         "blocks": "Blocks ranked by the factor on a record that overturns them first, "
         "each a line as the key says.",
         "fragility": "Part of the records that overturn a block of the list, by their factor.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 
 

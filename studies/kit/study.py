@@ -38,6 +38,11 @@ def _nothing(tables: Tables) -> Mapping[str, Any]:
     return {}
 
 
+def stages(*functions: Callable[..., Any]) -> dict[str, Any]:
+    """Return the stages of a study by their names, as `Study` takes them."""
+    return {function.__name__: function for function in functions}
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
     """A study: its finding and its figures are made of its tables alone.
