@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from itertools import product
 from typing import Any
@@ -18,7 +18,7 @@ from analytic.response import Outcome, Response
 from engines import ENGINES
 from engines.declaration import Engine
 from engines.scene import free_rocking_window
-from studies.cases.paper import HISTORIES, Case, chosen_cases
+from studies.cases.paper import HISTORIES, chosen_cases
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import duration, part
 from studies.kit.study import Figures, Study, Tables, stages
@@ -200,27 +200,18 @@ def put_back(job: Job) -> Row:
     }
 
 
-COLUMNS = {
-    ALONG: [
-        *("method", "value", "set", *(item.name for item in fields(Case)), "budget_s", "source"),
-        *("outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
-        *("setup_s", "runs", "error"),
-    ],
-    SCENES: [
-        *("engine", "scene", "outcome", "wall_s", "runs", "steps"),
-        *("step_s", "plain_s", "setup_s", "error", "message"),
-    ],
-}
+OF_SCENES = [
+    *("engine", "scene", "outcome", "wall_s", "runs", "steps"),
+    *("step_s", "plain_s", "setup_s", "error", "message"),
+]
+"""Columns of the table of scenes."""
 
 
-def tabulate(rows: pd.DataFrame) -> Tables:
+def tabulate(rows: Tables) -> Tables:
     """Return the rows of each table, and a line for each method, setting and set of cases."""
-    found = {}
-    for name, columns in COLUMNS.items():
-        table = rows[rows["table"] == name].reindex(columns=columns)
-        whole = {"figure", "aspect", "runs"}.intersection(columns)
-        found[name] = table.astype(dict.fromkeys(whole, int))
-    return {**found, "work-precision": work_precision(found[ALONG])}
+    scenes = rows.get(SCENES, pd.DataFrame()).reindex(columns=OF_SCENES)
+    found = rows[ALONG].drop(columns="table")
+    return {ALONG: found, SCENES: scenes, "work-precision": work_precision(found)}
 
 
 def work_precision(rows: pd.DataFrame) -> pd.DataFrame:
@@ -332,6 +323,7 @@ moving base. A compiled loop over mj_step takes MuJoCo's steps; Python takes all
         "steps. A cross marks a failed case or a wrong outcome."
     },
     alone=True,
+    split="table",
     **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

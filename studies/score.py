@@ -36,8 +36,8 @@ from studies.measures.published import PUBLISHED
 from studies.measures.verdicts import Verdict
 from studies.sources.registry import announce, presets_of, resolve
 
-MODEL, SWEEP, STEPS, EXTREMES, SCENES = (
-    f"score-{name}" for name in ("model", "sweep", "steps", "extremes", "scenes")
+MODEL, SWEEP, STEPS, EXTREMES = (
+    f"score-{name}" for name in ("model", "sweep", "steps", "extremes")
 )
 WRONG = "wrong"
 FURTHER = {"score-frame": "frame", "score-slide": "slide"}
@@ -48,12 +48,6 @@ NOISE = 1e-6
 """Relative change of a peak up to which two results are the same."""
 CASE = ["figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p"]
 """Columns that make the name of one of the paper's cases."""
-KNOWN = {
-    SWEEP: ("peak_ratio",),
-    STEPS: ("peak_ratio", "error"),
-    EXTREMES: ("peak_ratio", "error", "energy_growth", "slip_widths"),
-}
-"""Columns that a table has though none of its numbers may be known."""
 
 
 def uses_of(name: str) -> list[str]:
@@ -69,7 +63,6 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
         swept = [job for number, job in enumerate(swept) if number // len(uses) % 11 == 0]
     varied = [use for use in uses if preset_of(use) != AT_REST]
     along = [job for job in precision.jobs(varied, quick) if job.labels["table"] == precision.ALONG]
-    known = FURTHER.values()
     looked_at = dict.fromkeys([*uses, *(world.checked(engine_of(name)) for name in sources)])
     one = Question(system=world.BLOCK, motion=Still())
     tables = {
@@ -77,8 +70,10 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
         SWEEP: swept,
         STEPS: along,
         EXTREMES: stability.jobs(uses, quick),
-        SCENES: [job for job in scenes.jobs(uses, quick) if job.labels["scene"] in known],
     }
+    further = scenes.jobs(uses, quick)
+    for name, scene in FURTHER.items():
+        tables[name] = [job for job in further if job.labels["scene"] == scene]
     return [
         replace(job, labels={"part": name, **job.labels})
         for name, of_table in tables.items()
@@ -89,7 +84,7 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
 def measure(job: Job) -> Row:
     """Return what a job's table has of it."""
     of = {MODEL: look, SWEEP: answer, STEPS: precision.measure, EXTREMES: stability.measure}
-    return {**of, SCENES: scenes.measure}[job.labels["part"]](job)
+    return of.get(job.labels["part"], scenes.measure)(job)
 
 
 def look(job: Job) -> Row:
@@ -108,27 +103,20 @@ def look(job: Job) -> Row:
 
 def model(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the lines of the model check, of all that was looked at."""
-    found = rows.loc[rows["part"] == MODEL, ["source", "lines"]].explode("lines").dropna()
+    found = rows[["source", "lines"]].explode("lines").dropna()
     columns = [*world.Line._fields[:4], "verdict"]
     lines = pd.DataFrame(found["lines"].tolist(), columns=columns)
     return lines.assign(source=found["source"].to_numpy())
 
 
-def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return the rows of each table, without the columns of others."""
-    found = {MODEL: model(rows)}
-    for name, known in KNOWN.items():
-        mine = rows[rows["part"] == name].drop(columns=["part", "table"], errors="ignore")
-        found[name] = mine[[it for it in mine if it in known or mine[it].notna().any()]]
-    tables = scenes.tabulate(rows[rows["part"] == SCENES].reindex(columns=[*{*rows, "scene"}]))
-    for name, scene in FURTHER.items():
-        if len(held := scenes.built(tables[scene])):
-            found[name] = held
-    whole = {"figure", "aspect", "runs", "impacts", "steps"}
-    return {
-        name: table.astype(dict.fromkeys(whole.intersection(table), int))
-        for name, table in found.items()
-    }
+def tabulate(rows: Tables) -> Tables:
+    """Return the rows of each table: of a scene those of what an engine is built for."""
+    tables = {}
+    for name, table in rows.items():
+        held = scenes.built(table) if name in FURTHER else table
+        if len(held):
+            tables[name] = held.drop(columns=["part", "table"], errors="ignore")
+    return tables | {MODEL: model(rows[MODEL])}
 
 
 def swept(tables: Tables) -> pd.DataFrame:
@@ -216,7 +204,7 @@ def shown(tables: Tables) -> Tables:
         "Verdicts on extreme cases": stability.verdicts(extremes),
         "Failures in extreme cases": stability.failures(extremes)[stability.FAILURE],
         **{
-            f"In the scene of a {scene}": scenes.tabulate(tables[name])[f"{scene}-summary"]
+            f"In the scene of a {scene}": scenes.summed(tables[name], scene)
             for name, scene in FURTHER.items()
             if name in tables
         },
@@ -242,6 +230,7 @@ STUDY = Study(
     question="What does one engine predict, and did it get worse?",
     help="The paper's cases, errors along the step, extreme cases, slides and frames.",
     needed=lambda rows: [row for row in rows if row["part"] in (MODEL, SWEEP)],
+    split="part",
     **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 

@@ -19,7 +19,7 @@ from studies.kit.options import Running
 from studies.kit.run import exit_code, makers_of, run
 from studies.kit.say import as_text
 from studies.kit.store import Store, provenance_of
-from studies.kit.tables import read_table, tables_of, write_text
+from studies.kit.tables import read_table, split, tables_of, write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -59,7 +59,8 @@ class Study:
     quick: str = ""  # what --quick leaves out; without it, there is no such option
     jobs: Callable[..., Sequence[Job]]  # (sources, quick[, options]), in the order of the rows
     measure: Callable[[Job], Row] = answer  # columns after labels and source, outcome among them
-    tabulate: Callable[[pd.DataFrame], Tables]  # of its rows
+    split: str = ""  # a label whose values are tables: `tabulate` then takes the rows of each
+    tabulate: Callable[[Any], Tables]  # of its rows
     finding: Callable[[Tables], str]  # what its tables show, in a sentence
     shown: Callable[[Tables], Tables] = _nothing  # short tables beside the finding, by their titles
     figures: Callable[[Tables], Figures] = _nothing
@@ -111,7 +112,7 @@ class Study:
         """
         with Store(out, self.name, self.rows) as store:
             rows = run(jobs, self.measure, place_of(running), store, running.also or ())
-            tables = self.tabulate(pd.DataFrame(rows))
+            tables = self.tabulate(split(rows, self.split) if self.split else pd.DataFrame(rows))
             store.finish(tables, makers_of(jobs, self.measure), len(rows), **asked)
         print(self.tell(out))
         return exit_code(self.needed(rows))

@@ -5,9 +5,11 @@ from __future__ import annotations
 import gzip
 import hashlib
 import os
-from collections.abc import Iterable, Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -40,6 +42,14 @@ def write_text(path: Path, text: str) -> None:
 def write_table(path: Path, table: pd.DataFrame) -> None:
     """Write a table without its index as CSV, numbers to the bit and missing ones as nan."""
     write_text(path, table.to_csv(index=False, na_rep="nan"))
+
+
+def split(rows: Iterable[Mapping[str, Any]], label: str) -> dict[str, pd.DataFrame]:
+    """Return the rows of each value of a label as a table, with the columns that they have."""
+    found = defaultdict[str, list[Mapping[str, Any]]](list)
+    for row in rows:
+        found[row[label]].append(row)
+    return {name: pd.DataFrame(of) for name, of in found.items()}
 
 
 def with_head(table: pd.DataFrame, study: str, name: str) -> pd.DataFrame:

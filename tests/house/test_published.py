@@ -71,9 +71,7 @@ def test_nothing_is_computed_again_in_a_published_folder(name, tmp_path):
 
 
 FOLLOWING = {
-    "scenes": lambda found: scenes.tabulate(
-        pd.concat([found[name] for name in scenes.LABELS if name in found])
-    ),
+    "scenes": scenes.tabulate,
     "restitution": lambda found: restitution.tabulate(
         found["restitution"].assign(source="", outcome="", message="")
     ),
