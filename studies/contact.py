@@ -230,7 +230,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw what the settings that matter most are worth, where an engine has a tuned contact."""
-    from studies.drawing.contact import draw_contact
+    from studies.drawing.rows import draw_contact
 
     left = left_at_default(tables["variants"])
     return {"contact": draw_contact(left)} if len(left) else {}

@@ -313,7 +313,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw the errors and run times of frames."""
-    from studies.drawing.sweep import draw_overview
+    from studies.drawing.rows import draw_overview
 
     lines = _engines_in(tables["frame-summary"]).rename(
         columns={"frames": "cases", "median_error": "median", "max_error": "max"}

@@ -214,7 +214,7 @@ def shown(tables: Tables) -> Tables:
 def figures(tables: Tables) -> Figures:
     """Draw the errors of its presets over their run times, and their scores in extreme cases."""
     from studies.drawing.precision import draw_precision
-    from studies.drawing.stability import draw_scores
+    from studies.drawing.rows import draw_scores
 
     along = precision.work_precision(tables[STEPS])
     asked = (stability.scores(tables[EXTREMES], each) for each in ("engine", "case"))

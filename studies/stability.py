@@ -123,7 +123,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw the valid cases that engines predict."""
-    from studies.drawing.stability import draw_scores
+    from studies.drawing.rows import draw_scores
 
     engines, cases = (scores(tables["stability"], each) for each in ("engine", "case"))
     return {"stability": draw_scores(finding(tables), engines, cases)} if len(engines) else {}

@@ -174,7 +174,7 @@ def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
 
 def figures(tables: Tables) -> Figures:
     """Draw the errors in bands of the sensitivity; there is no figure of factors."""
-    from studies.drawing.validate import draw_conditioning
+    from studies.drawing.rows import draw_conditioning
 
     return {"validate": draw_conditioning(tables["errors"])} if "errors" in tables else {}
 
