@@ -17,7 +17,7 @@ from studies.kit.arguments import sources_option
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import capital, out_of
 from studies.kit.study import Figures, Study, Tables, stages
-from studies.measures.claims import claim, table_of
+from studies.measures.claims import claim
 from studies.measures.history import samples
 
 LINEAR = ("exact", "housner", "modified")
@@ -78,7 +78,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
         tested = tables.get(name, lines) if number == 2 else lines
         silent = tested["source"].isin(lines.loc[failed, "source"])
         found.append(FIGURES[name][1](tested[~silent]))
-    return {**tables, "findings": table_of(found)}
+    return {**tables, "findings": pd.DataFrame(found)}
 
 
 def finding(tables: Tables) -> str:

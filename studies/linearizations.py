@@ -16,7 +16,7 @@ from studies.cases.paper import PULSES, sweep_cases
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables, stages
-from studies.measures.claims import Finding, table_of
+from studies.measures.claims import Finding
 from studies.measures.differences import posed_cases
 from studies.measures.wrongness import wrong_in
 
@@ -124,7 +124,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     return {
         "linearizations": lines.assign(title=[VARIANTS[word].title for word in lines["changed"]]),
         "slenderness": by_aspect,
-        "findings": table_of([conclusion(lines)]),
+        "findings": pd.DataFrame([conclusion(lines)]),
     }
 
 

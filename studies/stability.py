@@ -13,7 +13,7 @@ from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.history import SAMPLES
-from studies.measures.presets import engine_of, in_order, in_words, is_engine, preset_of
+from studies.measures.presets import engine_of, in_order, is_engine, look_of, preset_of
 from studies.measures.verdicts import ACCEPTED, Verdict, judge
 from studies.sources.registry import core_sources
 
@@ -104,8 +104,8 @@ def finding(tables: Tables) -> str:
     share, best = (
         part(line["right"] / line["valid"]) if line["right"] else "none" for line in (first, last)
     )
-    words = f"Engines predict {share} of the extreme cases {in_words(first['preset'])}"
-    return f"{words}, {best} {in_words(last['preset'])}." if first != last else f"{words}."
+    words = f"Engines predict {share} of the extreme cases {look_of(first['preset']).words}"
+    return f"{words}, {best} {look_of(last['preset']).words}." if first != last else f"{words}."
 
 
 def shown(tables: Tables) -> Tables:

@@ -16,9 +16,9 @@ from studies.kit.jobs import Job, Question
 from studies.kit.options import EffortOptions
 from studies.kit.say import capital, listed, out_of, part
 from studies.kit.study import Figures, Study, Tables, stages
-from studies.measures.claims import claim, table_of
+from studies.measures.claims import claim
 from studies.measures.differences import summarize, with_reference
-from studies.measures.presets import engine_of, in_order, in_words, preset_of
+from studies.measures.presets import engine_of, in_order, look_of, preset_of
 from studies.measures.wrongness import KINDS
 from studies.sources.registry import core_sources
 
@@ -54,7 +54,7 @@ def jobs(sources: Iterable[str], quick: bool, options: Options) -> list[Job]:
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows, a line for each figure and source, and the paper's conclusions."""
     compared = with_reference(rows)
-    found = table_of([test(compared) for test in CONCLUSIONS])
+    found = pd.DataFrame([test(compared) for test in CONCLUSIONS])
     return {"sweep": rows, "summary": summarize(compared), "findings": found}
 
 
@@ -91,7 +91,7 @@ def finding(tables: Tables) -> str:
         known = presets.groupby("preset").agg({"right": "min", "max": "max"}).loc[ends]
         least = ["all" if n == cases else f"at least {n}" for n in known["right"]]
         least[0] += f"{' of' * (least[0] != 'all')} {cases} outcomes"
-        words = listed(f"{n} {in_words(name)}" for n, name in zip(least, ends, strict=True))
+        words = listed(f"{n} {look_of(name).words}" for n, name in zip(least, ends, strict=True))
         errors = listed(map(part, known["max"]))
         return f"Engines predict {words}; their peaks err by up to {errors}."
     others = lines[lines["source"] != "exact"].sort_values("agree", kind="stable")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
@@ -48,16 +48,6 @@ class Strength(NamedTuple):
     lifts: float
     margin: float
     margin_friction: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Apart(Job):
-    """A job in a process of its own, for one of many searches."""
-
-    @property
-    def needs_process(self) -> bool:
-        """Always."""
-        return True
 
 
 ALL_SCALES = 0.0
@@ -113,11 +103,12 @@ def jobs(
         listed |= listed.pop("further")
         rubs = engine and cabinet.friction is not None
         found.append(
-            (Apart if many and scale == ALL_SCALES else Job)(
+            Job(
                 labels={**listed, **moves[name], "scale": scale},
                 case=Question(system=block, motion=motion, duration=window),
                 source=source,
                 options={"friction": cabinet.friction} if rubs else {},
+                apart=many and scale == ALL_SCALES,
             )
         )
     return found

@@ -18,15 +18,7 @@ from engines.scene import System
 from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import PULSES
 from studies.compare.rows import compare, records
-from studies.kit.arguments import (
-    Place,
-    Positive,
-    Sources,
-    check_file,
-    refuse_both,
-    refuse_given,
-    required,
-)
+from studies.kit import arguments
 from studies.kit.cluster import place_of
 from studies.kit.jobs import Question, Row
 from studies.kit.options import Computing, EffortOptions, Yours
@@ -50,12 +42,12 @@ def command(
     height: Height | None = None,
     excitation: Excitation = Excitation(),  # noqa: B008
     standing: Standing = Standing(),  # noqa: B008
-    sources: Sources = DEFAULT_SOURCES,
-    duration: Positive | None = None,
+    sources: arguments.Sources = DEFAULT_SOURCES,
+    duration: arguments.Positive | None = None,
     effort: EffortOptions = EffortOptions(),  # noqa: B008
     yours: Yours = Yours(),  # noqa: B008
     estimate: bool = False,
-    plot: Place | None = None,
+    plot: arguments.Place | None = None,
     json: bool = False,
     computing: Computing = Computing(),  # noqa: B008
 ) -> int:
@@ -82,15 +74,15 @@ def command(
         Print one JSON object per line for each source, instead of the table.
     """
     if standing.scene == "slide":
-        refuse_given({"plot": plot}, "only where something rocks")
+        arguments.refuse_given({"plot": plot}, "only where something rocks")
         if sources == DEFAULT_SOURCES:  # a block that slides has no linearization
             sources = ("exact", *core_sources())
-    refuse_both(dt=yours.dt, p_dt=effort.p_dt)
+    arguments.refuse_both(dt=yours.dt, p_dt=effort.p_dt)
     effort.refuse_idle(sources)
     words = "a block requires its full width and height [m]"
-    width, height = required(words, width=width, height=height)
+    width, height = arguments.required(words, width=width, height=height)
     if plot is not None:
-        check_file("--plot", plot, ".png", ".pdf", ".svg")
+        arguments.check_file("--plot", plot, ".png", ".pdf", ".svg")
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
     window = window_of(system, motion, duration, p_dt=effort.p_dt, dt=yours.dt)

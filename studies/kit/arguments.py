@@ -124,17 +124,11 @@ def sources_option(first: str = "", *, default: bool = True) -> Parameter:
 
 
 def _check_sources(_: type, names: Sequence[str] | None) -> None:
-    if names is None:  # they are not given
-        return
-    if not names:
-        words = f"it must name at least one of {registry.allowed()}"
-        raise BadInputError(f"--sources is empty; {words}")
-    for name in names:
-        try:
+    for name in names or ():
+        with as_bad_input("--sources: "):
             registry.resolve(name)
-        except registry.UnknownSourceError as error:
-            raise BadInputError(f"--sources: {error}") from error
-    refuse_repeats("--sources", names)
+    if names is not None:
+        refuse_repeats("--sources", names, f"name at least one of {registry.allowed()}")
 
 
 def _check_engines(_: type, names: Sequence[str] | None) -> None:
@@ -158,11 +152,13 @@ Engines = Annotated[
 ]
 
 
-def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
+def refuse_repeats(
+    argument: str, values: Iterable[Any], needed: str = "have at least one value"
+) -> None:
     """Refuse an argument, named with its dashes, of which a value is given twice, or none."""
     values = list(values)
     if not values:
-        raise BadInputError(f"{argument} is empty; it must have at least one value")
+        raise BadInputError(f"{argument} is empty; it must {needed}")
     for number, value in enumerate(values):
         if value in values[:number]:
             shown = str(value) if isinstance(value, Path) else value
@@ -171,13 +167,8 @@ def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
 
 def refuse_given(options: Mapping[str, object], allowed: str) -> None:
     """Refuse options, given where not None or False, that may be given as `allowed` says."""
-    given = [
-        f"{_option(name)} is {value}"
-        for name, value in options.items()
-        if value is not None and value is not False
-    ]
-    if given:
-        raise BadInputError(f"{' and '.join(given)}; it may be given {allowed}")
+    if given := {name: it for name, it in options.items() if it is not None and it is not False}:
+        raise BadInputError(f"{_shown(given)}; it may be given {allowed}")
 
 
 def required(words: str, **given: T | None) -> tuple[T, ...]:
@@ -191,11 +182,14 @@ def required(words: str, **given: T | None) -> tuple[T, ...]:
 def refuse_both(**given: float | str | None) -> None:
     """Refuse two options of which each says what the other does; None where it is not given."""
     if None not in given.values():
-        shown = " and ".join(
-            f"{_option(name)} is {f'{value:g}' if isinstance(value, float) else value}"
-            for name, value in given.items()
-        )
-        raise BadInputError(f"{shown}; give one or the other")
+        raise BadInputError(f"{_shown(given)}; give one or the other")
+
+
+def _shown(options: Mapping[str, object]) -> str:
+    return " and ".join(
+        f"{_option(name)} is {f'{value:g}' if isinstance(value, float) else value}"
+        for name, value in options.items()
+    )
 
 
 def _option(name: str) -> str:

@@ -9,17 +9,7 @@ from cyclopts import Parameter
 from analytic.slide import SlidingBlock
 from engines.scene import System
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import (
-    Count,
-    NotNegative,
-    Place,
-    Positive,
-    Step,
-    TimeLimit,
-    one_of,
-    refuse_given,
-    several_or_none,
-)
+from studies.kit import arguments
 from studies.kit.store import usable_cores
 from studies.sources.registry import Accuracy, resolve
 
@@ -39,13 +29,13 @@ class Computing:
         Address of a Dask scheduler whose workers run all cases, such as tcp://127.0.0.1:8786.
     """
 
-    jobs: Count | None = None
-    time_limit: TimeLimit = 600.0
+    jobs: arguments.Count | None = None
+    time_limit: arguments.TimeLimit = 600.0
     cluster: str | None = None
 
     def __post_init__(self) -> None:
         if self.cluster is not None:
-            refuse_given({"jobs": self.jobs}, "only without --cluster")
+            arguments.refuse_given({"jobs": self.jobs}, "only without --cluster")
 
     @property
     def workers(self) -> int:
@@ -65,7 +55,7 @@ class Running(Computing):
         elsewhere; their rows are added.
     """
 
-    also: Annotated[tuple[Place, ...] | None, several_or_none] = None
+    also: Annotated[tuple[arguments.Place, ...] | None, arguments.several_or_none] = None
 
 
 @Parameter(name="*")
@@ -81,8 +71,8 @@ class EffortOptions:
         Accuracy of engines with landing steps; by default standard.
     """
 
-    p_dt: Step | None = None
-    accuracy: Annotated[Accuracy, one_of(Accuracy)] | None = None
+    p_dt: arguments.Step | None = None
+    accuracy: Annotated[Accuracy, arguments.one_of(Accuracy)] | None = None
 
     @property
     def own(self) -> bool:
@@ -101,13 +91,16 @@ class EffortOptions:
 
     def refuse_idle(self, sources: Sequence[str]) -> None:
         """Refuse an option that none of the sources takes."""
-        for name, taking, words in (
-            ("p-dt", "stepping", "a solver or an engine"),
-            ("accuracy", "accurate", "an engine that chooses its steps"),
-        ):
-            taken = any(getattr(resolve(source), taking) for source in sources)
-            if (value := getattr(self, name.replace("-", "_"))) is not None and not taken:
-                raise BadInputError(f"--{name} is {value}; --sources must name {words}")
+        _refuse_idle(sources, "stepping", "a solver or an engine", p_dt=self.p_dt)
+        _refuse_idle(
+            sources, "accurate", "an engine that chooses its steps", accuracy=self.accuracy
+        )
+
+
+def _refuse_idle(sources: Sequence[str], taking: str, words: str, **given: Any) -> None:
+    """Refuse a given option if none of the sources is what takes it."""
+    if not any(getattr(resolve(source), taking) for source in sources):
+        arguments.refuse_given(given, f"only if --sources names {words}")
 
 
 @Parameter(name="*")
@@ -124,22 +117,17 @@ class Yours:
         Step [s] of solvers, and of engines whose preset takes equal steps.
     """
 
-    friction: NotNegative | None = None
-    dt: Positive | None = None
+    friction: arguments.NotNegative | None = None
+    dt: arguments.Positive | None = None
 
     def options(self, sources: Sequence[str], system: System) -> dict[str, dict[str, float]]:
         """Return the options that this means for each source: friction, and step, p dt."""
-        asked = {name: resolve(name) for name in sources}
-        idle = not any(source.engine for source in asked.values())
-        if self.friction is not None and idle and not isinstance(system, SlidingBlock):
-            raise BadInputError(
-                f"--friction is {self.friction:g}; --sources must name at least one engine"
-            )
-        if self.dt is not None and not any(source.stepping for source in asked.values()):
-            words = "a solver or an engine that takes equal steps"
-            raise BadInputError(f"--dt is {self.dt:g}; --sources must name {words}")
+        if not isinstance(system, SlidingBlock):
+            _refuse_idle(sources, "engine", "at least one engine", friction=self.friction)
+        words = "a solver or an engine that takes equal steps"
+        _refuse_idle(sources, "stepping", words, dt=self.dt)
         chosen: dict[str, dict[str, float]] = {name: {} for name in sources}
-        for name, source in asked.items():
+        for name, source in [(name, resolve(name)) for name in sources]:
             if self.friction is not None and source.engine:
                 chosen[name]["friction"] = self.friction
             if self.dt is not None and source.accurate:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias
 
@@ -35,8 +35,3 @@ def claim(statement: str, *needs: str) -> Callable[[Check], Callable[[pd.DataFra
         return Finding(statement, *check(table))
 
     return lambda check: partial(tested, check)
-
-
-def table_of(items: Sequence[Finding]) -> pd.DataFrame:
-    """Return findings as a table."""
-    return pd.DataFrame([asdict(item) for item in items])

@@ -24,7 +24,7 @@ from studies.kit.store import check, versions, write_record
 from studies.kit.tables import read_table, tables_of, write_table, write_text
 from studies.measures.costs import RETIRED, STEPPED
 from studies.measures.history import samples
-from studies.measures.presets import engine_of, in_words
+from studies.measures.presets import engine_of, look_of
 from studies.measures.published import dictionary
 from studies.measures.wrongness import MEANINGS, WORDS
 from studies.page import facts
@@ -126,7 +126,7 @@ def pages(root: Path) -> dict[Path, str]:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    filters = (capital, duration, in_words, part, row)
+    filters = (capital, duration, look_of, part, row)
     environment.filters |= {each.__name__: each for each in filters}
     chapters = {
         title: [_told(one, published / one.folder) for one in parts if one in known]

@@ -6,7 +6,7 @@ import pytest
 
 from studies import histories
 from studies.kit.run import run
-from studies.measures.claims import claim, table_of
+from studies.measures.claims import claim
 
 
 def lines(number, **peaks):
@@ -64,4 +64,4 @@ def test_a_claim_needs_its_sources():
     table = pd.DataFrame({"source": ["exact"], "value": [2.0]})
     less = claim("two is less than one", "exact")(lambda t: (bool((t["value"] < 1).all()), "2"))
     lost = claim("nobody asked", "rk4")(lambda t: (True, ""))
-    assert list(table_of([less(table), lost(table)])["holds"]) == [False, None]
+    assert list(pd.DataFrame([less(table), lost(table)])["holds"]) == [False, None]
