@@ -98,8 +98,8 @@ blocks list.csv --out DIR | --record requires an argument
 
 # a reader's own friction and step
 compare CASE --dt 0.002 | --dt is 0.002; | pybullet takes steps that land on impacts
-compare CASE --dt 0.002 --sources exact | --dt is 0.002; it may be given only if --sources names a solver
-compare CASE --friction 1 --sources rk4 | --friction is 1; it may be given only if --sources names at least one
+compare CASE --dt 0.002 --sources exact | --dt is 0.002; it may be | names a solver or an engine
+compare CASE --friction 1 --sources rk4 | --friction is 1; it may be | names at least one engine
 compare CASE --friction 99 --sources pybullet | friction is 99.0; it must be from 0 to
 compare CASE --dt 1e-12 --sources rk4 | --dt is 1e-12; it must be at least 3.6
 compare CASE --dt 0.01 --p-dt 0.1 --sources rk4 | --dt is 0.01 and --p-dt is 0.1; give one or the
