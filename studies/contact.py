@@ -41,7 +41,6 @@ FOUND = ["failed", "wrong", "max_error"]
 SCENES = "block: cases of the paper. frame: random frames, a beam on 2 to 5 columns."
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Which engines, and what stands on the base."""

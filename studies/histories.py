@@ -7,7 +7,6 @@ from typing import Annotated
 
 import numpy as np
 import pandas as pd
-from cyclopts import Parameter
 
 from analytic.response import Outcome
 from engines.scene import free_rocking_window
@@ -29,7 +28,6 @@ SAMPLES = ["time_s", "ground_g", "theta_ratio", "velocity_rad_s"]
 """Columns of a figure's samples."""
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Which figures, and whose lines."""

@@ -48,7 +48,6 @@ RIGHT, FALSE, MISSED, OFF, INVALID = "right", "false", "missed", "peak off", "in
 """Verdicts, beside kinds of wrong outcomes; invalid where the block should slide or lift off."""
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Which plane of pulses the models map."""

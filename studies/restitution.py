@@ -16,7 +16,6 @@ from itertools import product
 from typing import cast
 
 import pandas as pd
-from cyclopts import Parameter
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
@@ -49,7 +48,6 @@ SHOWN = 0.6
 STILL = SinePulse(amplitude=0.0, omega=1.0, half_cycles=1)
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Which engines."""

@@ -33,7 +33,6 @@ from studies.measures.costs import joint
 from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import engine_of, preset_of
 from studies.measures.published import PUBLISHED
-from studies.measures.verdicts import Verdict
 from studies.sources.registry import announce, presets_of, resolve
 
 MODEL, SWEEP, STEPS, EXTREMES = (
@@ -175,7 +174,7 @@ def summary(tables: Tables) -> pd.DataFrame:
             "largest error": part(line["max_error"]),
             "run time of a case": duration(line["wall_s"] / line["cases"]),
             "median errors, long to short steps": ", ".join(map(part, along.get(source, []))),
-            "extreme cases right": right(EXTREMES, "verdict", Verdict.GOOD.value),
+            "extreme cases right": right(EXTREMES, "verdict", stability.Verdict.GOOD.value),
             "slides right": right("score-slide", "verdict", "right"),
             "frames right": right("score-frame", "right", True),
         }
@@ -187,7 +186,7 @@ def right_of(tables: Tables, source: str, name: str, column: str, good: object) 
     if name not in tables:
         return "-"
     mine = tables[name]
-    mine = mine[(mine["source"] == source) & (mine[column] != Verdict.INVALID.value)]
+    mine = mine[(mine["source"] == source) & (mine[column] != stability.Verdict.INVALID.value)]
     return out_of((mine[column] == good).sum(), len(mine)) if len(mine) else "-"
 
 

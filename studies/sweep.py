@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass
 from typing import Annotated
 
 import pandas as pd
-from cyclopts import Parameter
 
 from engines.factors import BEST
 from studies.cases.paper import sweep_cases
@@ -25,7 +24,6 @@ from studies.sources.registry import core_sources
 WHICH = "Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by default."
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options(EffortOptions):
     """Which figures, and how finely the sources step."""

@@ -10,7 +10,6 @@ from typing import Annotated
 
 import numpy as np
 import pandas as pd
-from cyclopts import Parameter
 
 from analytic import simulate
 from analytic.response import Outcome
@@ -39,7 +38,6 @@ CASES, TESTS = {False: (500, 100), True: (300, 20)}, (100, 10)
 """Random cases, in full and quickly: without --halves and with it, and of those that test."""
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options(EffortOptions):
     """Which random cases, and whether at half the step, too.

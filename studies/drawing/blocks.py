@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from scipy.stats import norm
 
 from studies.drawing.facets import key, sheet
-from studies.drawing.letters import drawable, families
+from studies.drawing.letters import families
 from studies.drawing.styles import look_at
 
 MOST_RECORDS = 5
@@ -59,7 +59,7 @@ def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Fig
         axes.tick_params(axis="x", which="both", labelsize=9)
         axes.set_yticks(range(len(names)), map(_short, names), fontsize=8)
         axes.grid(axis="y", alpha=0.2)
-        axes.set_title(drawable(title) + kept, fontsize=10, wrap=True)
+        axes.set_title(title + kept, fontsize=10, wrap=True)
         handles = [key_of[place] for place in sorted(key_of)]
         key(drawing, [*handles, asked], min(len(handles) + 1, 2 if many else 4), 10.0)
     return drawing
@@ -133,5 +133,4 @@ def _draw_line(axes: Axes, line: dict[Any, Any], level: float, place: int) -> Li
 
 
 def _short(name: str) -> str:
-    name = drawable(name)
     return name if len(name) <= 24 else f"{name[:23]}…"

@@ -1,5 +1,6 @@
 """Figures as files: each written in one piece."""
 
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import BinaryIO
@@ -25,8 +26,9 @@ def lay_out(drawing: Figure) -> None:
 def save(drawing: Figure, path: Path) -> None:
     """Write a figure in one piece, in the format of the file's suffix; its layout is then fixed."""
     drawing.set_dpi(DPI)
-    lay_out(drawing)
-    with draft(path) as part, part.open("wb") as file:
+    with draft(path) as part, part.open("wb") as file, warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph")  # a letter that no font has is a box
+        lay_out(drawing)
         if path.suffix == ".png":
             write_points(drawing, file)
         else:

@@ -74,7 +74,7 @@ class Study:
         """Return its command: the function whose parameters are the command's options."""
         taken: dict[str, tuple[Any, Any]] = {"out": (Out, inspect.Parameter.empty)}
         if self.options is not None:
-            taken["options"] = (self.options, self.options())
+            taken["options"] = (Annotated[self.options, Parameter(name="*")], self.options())
         if self.sources:
             taken["sources"] = (Annotated[tuple[str, ...], SHARED, sources_option()], self.sources)
         if self.quick:

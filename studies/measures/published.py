@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -27,14 +27,10 @@ COLUMNS = Path(__file__).with_name("columns.csv")
 (a count) or number; its unit, "-" without one; and its meaning."""
 
 
-@cache
-def columns() -> dict[tuple[str, str], tuple[str, ...]]:
+def columns() -> dict[Any, list[str]]:
     """Return what COLUMNS says of a column, by table (empty: any) and name."""
-    lines = pd.read_csv(COLUMNS, keep_default_na=False)
-    return {
-        (str(table), str(name)): tuple(map(str, about))
-        for table, name, *about in lines.itertuples(index=False, name=None)
-    }
+    lines = pd.read_csv(COLUMNS, keep_default_na=False).set_index(["table", "column"])
+    return dict(zip(lines.index, lines.to_numpy().tolist(), strict=True))
 
 
 def dictionary(published: Path) -> pd.DataFrame:
