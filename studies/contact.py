@@ -111,10 +111,7 @@ def job_of(
 
 
 def measure(job: Job) -> Row:
-    """Return the summary, the velocity ratio and its e, slip, penetration and energy.
-
-    Of a frame the velocity ratio implies no e of a single corner.
-    """
+    """Return the summary, the velocity ratio and its e, slip, penetration and energy."""
     response, motion = ask(job), job.case.motion
     system = cast(Rocker, job.case.system)
     least = 0.1 * system.p * system.alpha  # slower impacts show no velocity ratio

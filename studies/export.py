@@ -113,11 +113,7 @@ def source_of(engine: str) -> str:
 
 
 def files(use: Use, expected: Any, exact: Any) -> dict[str, str]:
-    """Return the name and text of every file of a scene that has a duration.
-
-    What the script is to find, and what the exact solution does, is the largest rotation over the
-    critical one, or the slips [m] where nothing rocks.
-    """
+    """Return the name and text of every file of a scene that has a duration."""
     assert use.engine.script is not None  # `source_of` refuses what cannot be written out
     scene, script = use.scene, use.engine.script(use.scene, use.settings, use.dt_s)
     environment = Environment(

@@ -34,11 +34,7 @@ ERRORS = ["median_error", "max_error"]
 
 
 def variant(changed: str) -> Model:
-    """Return the linear model with Housner's or, by a 1, the modified onset, frequency and saddle.
-
-    The onset is g alpha or g tan(alpha), the frequency p or p sqrt(cos(alpha)), the saddle alpha or
-    tan(alpha); the forcing factor is the saddle over the onset.
-    """
+    """Return the linear model with Housner's or (a 1) the modified onset, frequency and saddle."""
     onset, frequency, saddle = (digit == "1" for digit in changed)
     words = f"onset g {'tan ' * onset}α, p{'√cos α' * frequency}, saddle {'tan ' * saddle}α"
     known = NAMED.get(changed, "")
@@ -59,11 +55,7 @@ VARIANTS = {word: variant(word) for word in map("".join, product("01", repeat=3)
 
 @cache
 def grid(name: str) -> pd.DataFrame:
-    """Return the cases of a grid, and the exact solution's peaks and outcomes.
-
-    "paper" is that of figures 6 to 9, without the copies by similarity; "wide" has H/B from 1.5 to
-    10, amplitudes from 1.02 to 4 onsets and omega/p from 0.2 to 8.
-    """
+    """Return the cases of a grid, and the exact solution's peaks and outcomes."""
     if name == "paper":
         cases = [c for c in sweep_cases([6, 7, 8, 9]) if c.width_m == 0.5]
         rows = [(c.aspect, c.amplitude_g, c.omega_over_p, PULSES[c.pulse]) for c in cases]

@@ -129,10 +129,7 @@ def measure(job: Job) -> Row:
 
 
 def along(job: Job) -> Row:
-    """Run a job over its whole window once, then time it to its peak alone.
-
-    A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
-    """
+    """Run a job over its whole window once, then time it to its peak alone."""
     whole, block, case = ask(job), job.case.system, job.case
     assert isinstance(block, RigidBlock)
     plain = replace(job, case=replace(case, duration=None))
@@ -235,10 +232,7 @@ def engines_of(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def cheapest(table: pd.DataFrame) -> tuple[float, pd.Series[Any], str] | None:
-    """Return the smallest error that an engine keeps, its cheapest setting, and on which cases.
-
-    They are all cases, or typical ones where no setting keeps an error on all.
-    """
+    """Return the smallest error that an engine keeps, its cheapest setting, and on which cases."""
     engines = engines_of(table)
     for cases, lines in ((ALL, joint(engines)), (TYPICAL, engines[engines["set"] == TYPICAL])):
         for target in reversed(TARGETS):

@@ -196,11 +196,7 @@ def finding(tables: Tables) -> str:
 
 
 def best_of(corners: pd.DataFrame) -> pd.DataFrame:
-    """Return the line of each engine's best way.
-
-    It is one with which the corner does not slide, where there is one; of these the one that is
-    least off over all strikes, and, where these are as far off, over the usual ones.
-    """
+    """Return the line of each engine's best way."""
     ranked = corners.assign(slid=corners["slide"] > SLIDES).sort_values(
         ["slid", "off_over_all", "off"], kind="stable"
     )

@@ -149,10 +149,7 @@ def exact_of(case: Question) -> Response:
 
 
 def measure(job: Job) -> Row:
-    """Return the summary, and how far the response is from the exact one of its scene.
-
-    Errors of peaks are relative, those of slips and places in metres, and nan where there is none.
-    """
+    """Return the summary, and how far the response is from the exact one of its scene."""
     response, case = ask(job), job.case
     scene = str(job.labels["scene"]).removeprefix(RANDOM)
     exact = exact_of(case)
@@ -189,10 +186,7 @@ def _verdict(response: Response, exact: Response) -> str:
 
 
 def _slip_error(response: Response, exact: Response) -> float:
-    """Return the largest error of a slip [m]; of a block that is held, how far it crept.
-
-    Where there are more slips than there should be, the longest count; nan where there are fewer.
-    """
+    """Return the largest error of a slip [m]; of a block that is held, how far it crept."""
     if response.outcome is Outcome.FAILED or len(response.slips) < len(exact.slips):
         return math.nan
     if not exact.slips:

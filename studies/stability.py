@@ -85,10 +85,7 @@ def reference(case: Extreme) -> tuple[Response, float]:
 
 
 def judge(case: Extreme, source: str, response: Response) -> dict[str, Any]:
-    """Return the verdict on a source's response, and what compares it with the exact solution.
-
-    It is INVALID where the reference does not hold, unless the answer is right, or the run broke.
-    """
+    """Return the verdict on a source's response, and what compares it with the exact solution."""
     exact, kappa = reference(case)
     both = exact.outcome is Outcome.ROCKED and not kind_of(response, exact)
     error = response.peak_ratio / exact.peak_ratio - 1.0 if both else math.nan

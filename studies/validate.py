@@ -105,10 +105,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
 
 
 def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows at the whole step, each with its estimate, and with the error over that.
-
-    The last is 0 where there is no error to speak of, nan unless both rocked.
-    """
+    """Return the rows at the whole step, each with its estimate, and with the error over that."""
     whole = with_reference(rows[rows["half"] == 0]).reset_index(drop=True)
     finer = rows[rows["half"] == 1].to_dict("records")
     pairs = zip(whole.to_dict("records"), finer, strict=True)

@@ -40,10 +40,7 @@ WIDTH = 1e-6
 
 
 class Strength(NamedTuple):
-    """Factors on a motion that lift and overturn, the latter inf if none up to MOST_ONSETS does.
-
-    The friction is what the exact solution needs at the factor that overturns.
-    """
+    """Factors on a motion that lift and overturn, the latter inf if none up to MOST_ONSETS does."""
 
     lifts: float
     margin: float

@@ -34,10 +34,8 @@ def compare(
 ) -> list[Row]:
     """Ask every source, and the exact solution besides; return a row for each.
 
-    It has the source's response and the exact one. `error` is relative, nan unless the exact block
-    rocks and both survive; `velocity_ratio` is the median, `impact_error` the largest of the first
-    impacts in units of 1/p;
-    kappa and sensitivity are of the exact peak; `estimate` needs every engine at half its step.
+    `error` is relative, nan unless both rock; `velocity_ratio` is the median of all impacts, and
+    `impact_error` the largest of the first ones, in units of 1/p.
     """
     own = yours.options(sources, case.system)
     jobs = [
@@ -107,11 +105,7 @@ def _estimated(row: Row, finer: Row | None, system: System, own_steps: bool) -> 
 
 
 def records(rows: Sequence[Row], note: str = "") -> list[dict[str, Any]]:
-    """Return what a reader gets of each row, by name: numbers may be inf or nan.
-
-    A note ends each message; min_normal, friction_needed and valid (whether the pivot stays on the
-    base) are of the exact solution; slips [m] and observables are of the scene, where it has any.
-    """
+    """Return what a reader gets of each row, by name: numbers may be inf or nan."""
     found: list[dict[str, Any]] = []
     for row in rows:
         exact, response = row["exact"], row["response"]

@@ -36,10 +36,7 @@ def outlines(system: System, at: float) -> FloatArray:
 
 
 def draw_hero(block: RigidBlock, samples: pd.DataFrame, lines: pd.DataFrame) -> Figure:
-    """Draw the outlines at the exact solution's largest rotation, above all histories.
-
-    A line has a source, its outcome and the relative error of its peak.
-    """
+    """Draw the outlines at the exact solution's largest rotation, above all histories."""
     drawing = Figure(figsize=(10.0, 6.0), layout="constrained")
     upper, lower = drawing.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.25))[:, 0]
     wide = samples.pivot(index="time_s", columns="source", values="theta_ratio")

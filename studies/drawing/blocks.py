@@ -26,11 +26,7 @@ MOST_DRAWN = 60
 
 
 def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Figure:
-    """Draw, for each block and record, the factors from lifting to overturning.
-
-    The lines, with the columns of blocks.csv, are in the order in which blocks stand; the scales
-    are the factors that were asked for.
-    """
+    """Draw, for each block and record, the factors from lifting to overturning."""
     records = [*dict.fromkeys(lines.sort_index()["record"])]
     names = [*dict.fromkeys(lines["name"])]
     kept = f"; these {MOST_DRAWN} first" if len(names) > MOST_DRAWN else ""
@@ -88,10 +84,7 @@ def _draw_spread(axes: Axes, lines: pd.DataFrame, level: int) -> dict[int, Line2
 
 
 def draw_fragility(fits: pd.DataFrame, lines: pd.DataFrame) -> Figure:
-    """Draw the part of the records that overturns each block, by their factor; of the list, dots.
-
-    The fits have the columns of fragility.csv, the lines those of blocks.csv.
-    """
+    """Draw the part of the records that overturns each block, by their factor."""
     fits = fits[(fits["measure"] == "factor") & fits["theta"].notna()]
     drawing, (axes,) = sheet((8.0, 4.2))
     with rc_context({"font.family": families(fits["name"].tolist()), "text.parse_math": False}):

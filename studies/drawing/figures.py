@@ -16,10 +16,7 @@ from studies.drawing.styles import LOWEST, full_name, line_of, style_of
 
 
 def draw_histories(samples: pd.DataFrame, title: str, *, errors: bool = False) -> Figure:
-    """Draw time histories over each other, a panel for each value of `panel` in samples.
-
-    With errors, under each panel how far its lines are from the exact one, if there is one.
-    """
+    """Draw time histories over each other, a panel for each value of `panel` in samples."""
     sources, groups = samples["source"].unique(), list(samples.groupby("panel", sort=False))
     heights = (1.5, 1.0) if errors and "exact" in sources else (1.0,)
     size = (10.0, (3.6 if len(heights) > 1 else 2.9) * len(groups) + 1.3)

@@ -30,11 +30,7 @@ POST_M = 0.5
 def write_film(
     path: Path, system: System, motion: Motion, times: FloatArray, rows: Sequence[Row], rate: int
 ) -> None:
-    """Write a .gif or .mp4 in one piece, a frame for each of the times [s], `rate` of them 1/s.
-
-    A row has its source, outcome and "theta": the rotation [rad] at each time, or the place [m] of
-    what slides.
-    """
+    """Write a .gif or .mp4 in one piece, a frame for each of the times [s], `rate` of them 1/s."""
     stage = Stage(system, motion, times, rows)
     writer: AbstractMovieWriter = PillowWriter(fps=rate)
     if path.suffix == ".mp4":
@@ -116,11 +112,7 @@ def turns(system: System) -> bool:
 
 
 def verdict(row: Row, system: System) -> tuple[int, str]:
-    """Return from which frame on it is known what becomes of a block, and what is written then.
-
-    Of a block that overturns, when it passes θcr for the last time; of others, at their peak; of
-    what slides, where it lies in the end.
-    """
+    """Return from which frame on it is known what becomes of a block, and what is written then."""
     theta, last = row["theta"], len(row["theta"]) - 1
     if not turns(system):
         return last, f"lies at {1e3 * theta[-1]:+.1f} mm"

@@ -27,10 +27,7 @@ BANDS = (0.0, 3.0, 10.0, 100.0, inf)
 
 
 def draw_overview(table: pd.DataFrame) -> Figure:
-    """Draw errors and run times of presets: engines as rows, presets as dots.
-
-    The table has a line for each: engine, preset, cases, wrong, median, max, ms.
-    """
+    """Draw errors and run times of presets: engines as rows, presets as dots."""
     table = table[table["preset"] != AT_REST]  # a variant, which the table has
     engines, presets = list(dict.fromkeys(table["engine"])), in_order(table["preset"])
     size = (8.6, 1.9 + 0.125 * len(presets) * len(engines))

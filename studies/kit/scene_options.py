@@ -224,10 +224,7 @@ def window_of(
     p_dt: float | None = None,
     dt: float | None = None,
 ) -> float:
-    """Return how long a block is watched [s]: as given, or the motion and 8/p.
-
-    What no computer sees the end of is refused, with a step in units of 1/p, or [s].
-    """
+    """Return how long a block is watched [s]: as given, or the motion and 8/p."""
     if duration is not None and duration < motion.duration:
         least = f"the length of the motion, {motion.duration:.6g} s"
         raise BadInputError(f"--duration is {duration:g}; it must be at least {least}")

@@ -106,10 +106,7 @@ class Study:
         return command
 
     def carry_out(self, out: Path, jobs: Sequence[Job], running: Running, **asked: Any) -> int:
-        """Run into a folder what it does not hold yet; write and print what that shows.
-
-        The provenance says what was asked. Returned is 1 if some rows failed that are needed, or 0.
-        """
+        """Run into a folder what it does not hold yet; write and print what that shows."""
         with Store(out, self.name, self.rows) as store:
             rows = run(jobs, self.measure, place_of(running), store, running.also or ())
             tables = self.tabulate(split(rows, self.split) if self.split else pd.DataFrame(rows))

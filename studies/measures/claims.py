@@ -12,10 +12,7 @@ import pandas as pd
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A statement, whether it holds, and the numbers that decide it.
-
-    `holds` is None where a source that it needs was not asked.
-    """
+    """A statement, whether it holds, and the numbers that decide it."""
 
     statement: str
     holds: bool | None

@@ -1,7 +1,4 @@
-"""One full run of every study, as this project keeps it.
-
-Where it is, what its columns mean, and what its tables know of every setting of the engines.
-"""
+"""One full run of every study, as this project keeps it."""
 
 from __future__ import annotations
 

@@ -50,12 +50,7 @@ def presets(published: Path) -> pd.DataFrame:
 
 
 def by_engine(published: Path) -> list[list[str]]:
-    """Return the cells of the README's table, a row for each engine.
-
-    They are wrong outcomes, median error and its share of theta_cr with default settings and a
-    moving floor; the first two with a floor at rest; wrong outcomes, largest error and time of the
-    tuned preset; largest error and time of landing, or of the engine's own steps.
-    """
+    """Return the cells of the README's table, a row for each engine."""
     rows = []
     for name, lines in presets(published).groupby("engine", sort=False):
         known = {str(line["preset"]): line for line in lines.to_dict("records")}
@@ -121,11 +116,7 @@ def advised(published: Path) -> list[list[str]]:
 
 
 def pasted(published: Path) -> list[dict[str, Any]]:
-    """Return what pasted lines are worth, for each engine and step, and the lines.
-
-    Cells are of a step with the place of its lines, errors, wrong outcomes, turns, slips and run
-    time, by default and pasted; own says whether the step is the library's own.
-    """
+    """Return what pasted lines are worth, for each engine and step, and the lines."""
     known = table_in(published / "advice", "lines", "literal")
     found: list[dict[str, Any]] = []
     for engine, dt_s, *both in pairs(table_in(published / "advice", "advice")):
@@ -155,11 +146,7 @@ def unadvised(published: Path) -> dict[str, str]:
 
 
 def lags(published: Path) -> list[list[str]]:
-    """Return how much of the defaults' error is a moving floor's, a row for each engine.
-
-    Of the paper's cases that survive in both and exactly: the median error on a moving floor, on
-    one at rest, and the median difference of the two peaks over the exact one.
-    """
+    """Return how much of the defaults' error is a moving floor's, a row for each engine."""
     rows, case = table_in(published / "presets", "sweep"), [*CASE]
     rows = rows[(rows["outcome"] == "rocked") & (rows["peak_ratio"] > 0.0)]
     peaks = rows.pivot(index=case, columns="source", values="peak_ratio")

@@ -96,11 +96,7 @@ class Source:
 def run_engine(
     block: System, motion: Motion, *, engine: str, preset: str | None, **options: Any
 ) -> Response:
-    """Build the scene, as `scene_of` does, and let the engine run it.
-
-    The response is failed, with its reason, where the engine is not installed or cannot do what is
-    asked; ValueError if it has no such preset or setting.
-    """
+    """Build the scene, as `scene_of` does, and let the engine run it."""
     from engines.run.run import run
 
     scene = scene_of(block, motion, preset, **options)
@@ -115,11 +111,7 @@ def scene_of(
     times: ArrayLike | None = None,
     **options: Any,
 ) -> Scene:
-    """Return the scene that an engine is asked about, with other options of `Scene` by name.
-
-    The preset is by default the best that the scene allows. ValueError if there is no such option,
-    or a value is not allowed.
-    """
+    """Return the scene that an engine is asked about, with other options of `Scene` by name."""
     allowed = [item.name for item in fields(Scene) if item.name not in NOT_OPTIONS]
     for name in options:
         one_of("option", name, allowed)
@@ -155,10 +147,7 @@ def announce(place: str, name_of: Callable[[str], str] = named) -> str:
 
 
 def resolve(name: str) -> Source:
-    """Return the source called `name`, which may be an engine with a preset after a colon.
-
-    UnknownSourceError if there is no such source or preset; the message lists what there is.
-    """
+    """Return the source called `name`, which may be an engine with a preset after a colon."""
     plain, colon, preset = name.partition(":")
     source = SOURCES.get(plain)
     if source is None:

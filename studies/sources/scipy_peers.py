@@ -70,10 +70,7 @@ def solve_ivp_response(
 
 @dataclass
 class _March:
-    """One response: the rotation folded to one side, time in units of 1/p, acceleration in g.
-
-    It is followed until a time, which is inf where the peak is to be decided.
-    """
+    """One response: the rotation folded to one side, time in units of 1/p, acceleration in g."""
 
     solve: Callable[..., Any]
     posed: Posed
