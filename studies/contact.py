@@ -137,15 +137,10 @@ def variants(engine: str) -> Iterator[Variant]:
         for factor in declared.factors:
             if set(BOTH) <= plain.keys():
                 yield from _exchanged(plain[name], factor)
-            yield from _levels(plain[name], factor)
-
-
-def _levels(plain: Variant, factor: Factor) -> Iterator[Variant]:
-    """Yield one of the two presets with each level of a factor that it has."""
-    for item in factor.levels:
-        if plain.preset in item.presets:
-            varied = {each: getattr(item, each) for each in ("settings", "scene", "trap")}
-            yield replace(plain, factor=factor.name, level=item.name, **varied)
+            for item in factor.levels:
+                if name in item.presets:
+                    varied = {each: getattr(item, each) for each in ("settings", "scene", "trap")}
+                    yield replace(plain[name], factor=factor.name, level=item.name, **varied)
 
 
 def _exchanged(plain: Variant, factor: Factor) -> Iterator[Variant]:

@@ -50,9 +50,8 @@ class Verdict(enum.Enum):
     INVALID = "invalid"
 
 
-ACCEPTED = (Verdict.GOOD, Verdict.UNSEEN, Verdict.INVALID)
+GOOD = [verdict.value for verdict in (Verdict.GOOD, Verdict.UNSEEN, Verdict.INVALID)]
 """Verdicts that are nobody's failure."""
-GOOD = [verdict.value for verdict in ACCEPTED]
 FAILURE = ["case", "source", "verdict", "error", "energy_growth", "slip_widths"]
 
 

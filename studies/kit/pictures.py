@@ -1,7 +1,6 @@
 """Figures as files: each written in one piece."""
 
 import warnings
-from collections.abc import Mapping
 from pathlib import Path
 from typing import BinaryIO
 
@@ -44,9 +43,3 @@ def write_points(drawing: Figure, file: BinaryIO) -> None:
     whole = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
     few = whole.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE)
     few.save(file, "png", optimize=True, dpi=(DPI, DPI))
-
-
-def save_all(drawings: Mapping[str, Figure], folder: Path) -> None:
-    """Write the figures of a study under their names into its folder."""
-    for name, drawing in drawings.items():
-        save(drawing, folder / f"{name}.png")

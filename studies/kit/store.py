@@ -6,7 +6,6 @@ A row is found again by the key of its job, and kept as long as what made it is 
 from __future__ import annotations
 
 import json
-import math
 import os
 import platform
 import sqlite3
@@ -342,11 +341,6 @@ def engines_of(record: Mapping[str, Any]) -> dict[str, str]:
     """Return the versions of a record's engines, also of those that answered elsewhere."""
     taken = [also["engines"] for run in record["runs"] for also in run.get("also", ())]
     return {name: it for known in (record["engines"], *taken) for name, it in known.items()}
-
-
-def whole_runs(record: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the runs of a record that computed all rows, and went on until the end."""
-    return [run for run in record["runs"] if run.get("computed") == run.get("rows", math.nan)]
 
 
 def check(folder: Path, names: Iterable[str], option: str) -> None:

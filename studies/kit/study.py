@@ -122,10 +122,10 @@ class Study:
     def tell(self, folder: Path) -> str:
         """Draw the figures of a folder and write its finding, from its tables; return the text."""
         tables = self.read(folder)
-        if drawn := self.figures(tables):
-            from studies.kit.pictures import save_all
+        for name, drawing in self.figures(tables).items():
+            from studies.kit.pictures import save
 
-            save_all(dict(drawn), folder)
+            save(drawing, folder / f"{name}.png")
         text = as_text(self.finding(tables), self.shown(tables))
         write_text(folder / "findings.txt", text + "\n")
         return text

@@ -11,7 +11,6 @@ import numpy as np
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import Preset
 from studies.cases.paper import sweep_cases
 from studies.measures.costs import joint
 from studies.measures.presets import uses_of
@@ -93,17 +92,15 @@ def _of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
         {
             "engine": [source.engine for source in asked],
             "preset": [source.preset for source in asked],
-            "value": [declared_value(source.used) for source in asked],
+            "value": [
+                float(getattr(use.settings, use.accuracy_knob[0]))
+                if use.accuracy_knob
+                else use.ordinary_step()
+                for use in (source.used for source in asked)
+            ],
             "wall_s": lines["wall_s"] / lines["cases"],
             "runs": 1,
             "cases": lines["cases"],
             "max_error": lines["max_error"].where(lines["agree"] == lines["cases"], math.inf),
         }
     )
-
-
-def declared_value(preset: Preset) -> float:
-    """Return p dt, or the accuracy knob, as a preset is declared; nan for a step in seconds."""
-    if preset.accuracy_knob is not None:
-        return float(getattr(preset.settings, preset.accuracy_knob[0]))
-    return preset.ordinary_step()

@@ -1,7 +1,5 @@
 """The model check: what a world does with one block, beside what it must do, seen from outside."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import closing

@@ -19,7 +19,7 @@ from studies.advise import cheapest, pairs
 from studies.advise import unadvised as not_advised
 from studies.kit.identity import NOT_INSTALLED
 from studies.kit.say import capital, duration, listed, number, part, signed
-from studies.kit.store import engines_of, provenance_of, whole_runs
+from studies.kit.store import engines_of, provenance_of
 from studies.kit.tables import table_in
 from studies.measures.costs import cost_text
 from studies.measures.presets import titled
@@ -56,10 +56,10 @@ def by_engine(published: Path) -> list[list[str]]:
         known = {str(line["preset"]): line for line in lines.to_dict("records")}
         cells = [f"<b>{TITLES[str(name)]}</b>"]
         moving, rests, tuned = (known[preset] for preset in (DEFAULT, AT_REST, "tuned"))
-        cells += [_wrong(moving), part(moving["median"]), part(moving["share"])]
-        cells += [_wrong(rests), part(rests["median"])]
+        cells += [wrong(moving), part(moving["median"]), part(moving["share"])]
+        cells += [wrong(rests), part(rests["median"])]
         best = ENGINES[str(name)].best
-        cells += [_wrong(tuned), part(tuned["max"]), f"{tuned['ms']:.0f} ms"]
+        cells += [wrong(tuned), part(tuned["max"]), f"{tuned['ms']:.0f} ms"]
         if best.name == "tuned":
             cells += ["–", "–"]
         else:
@@ -69,7 +69,8 @@ def by_engine(published: Path) -> list[list[str]]:
     return rows
 
 
-def _wrong(line: Line) -> str:
+def wrong(line: Line) -> str:
+    """Return how many outcomes of a line are wrong."""
     return str(sum(line[kind] for kind in KINDS))
 
 
@@ -124,7 +125,7 @@ def pasted(published: Path) -> list[dict[str, Any]]:
         place, title = f"{engine}-{1e6 * dt_s:.0f}", f"{TITLES[engine]}, {duration(dt_s)}"
         cells = [
             (part(line["median_error"]), part(line["max_error"]), part(line["median_difference"]),
-             _wrong(line), part(line["ill_max_error"]), number(line["yaw_deg"]),
+             wrong(line), part(line["ill_max_error"]), number(line["yaw_deg"]),
              part(line["slip_widths"]), duration(line["wall_s"])) for line in both
         ]  # fmt: skip
         found.append(
@@ -178,7 +179,8 @@ def made(published: Path) -> dict[str, str]:
 
 def lasts(*records: Mapping[str, Any]) -> str:
     """Return how long the sweep takes, at the first run after an installation and later."""
-    runs = [run for record in records for run in whole_runs(record)]
+    every = [run for record in records for run in record["runs"]]
+    runs = [run for run in every if run.get("computed") == run.get("rows")]  # whole ones
     times = {bool(run.get("first")): f"{run['duration_s']:.0f} s" for run in runs}
     first, later = (times.get(kind, "a time that was not measured") for kind in (True, False))
     return f"{first} the first time, when its functions are compiled, and for {later} later"

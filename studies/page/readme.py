@@ -56,7 +56,7 @@ def command(*, root: Path = Path()) -> int:
         The project's folder.
     """
     from studies.drawing.block import draw_hero
-    from studies.kit.pictures import save_all
+    from studies.kit.pictures import save
 
     published, folder = root / PUBLISHED, root / PUBLISHED / "hero"
     if not published.is_dir():
@@ -69,7 +69,7 @@ def command(*, root: Path = Path()) -> int:
     write_record(folder, {"study": "readme", **versions({})})
     histories = read_table(folder / "hero.csv")
     drawn = histories[~histories["source"].isin(MOVING)]
-    save_all({"hero": draw_hero(BLOCK, drawn, summary(drawn))}, folder)
+    save(draw_hero(BLOCK, drawn, summary(drawn)), folder / "hero.png")
     for path, text in pages(root).items():
         write_text(path, text)
         print(path)
