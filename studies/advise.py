@@ -23,8 +23,8 @@ from engines.registry import OWN
 from engines.run.run import YAW
 from studies.cases.drawn import free_boxes
 from studies.kit import arguments
+from studies.kit.arguments import Running
 from studies.kit.jobs import Job, Question, Row, ask, summary
-from studies.kit.options import Running
 from studies.kit.say import aligned, as_text, duration, out_of, part
 from studies.kit.scene_options import Height, Width, block_of
 from studies.kit.store import check

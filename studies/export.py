@@ -15,11 +15,10 @@ from engines.run.slide import LEAST_SLIP, SLIP_RATE
 from engines.run.steps import begin_of
 from engines.settings import perhaps
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import Place, Step, TimeLimit, refuse_both
+from studies.kit.arguments import Computing, Place, Step, TimeLimit, Yours, refuse_both
 from studies.kit.cluster import place_of
 from studies.kit.identity import version_of
 from studies.kit.jobs import Job, Question
-from studies.kit.options import Computing, Yours
 from studies.kit.run import exit_code, run, with_response
 from studies.kit.say import listed
 from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of

@@ -138,7 +138,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw the median errors over the slenderness."""
-    from studies.drawing.lines import draw_errors
+    from studies.drawing.figures import draw_errors
 
     titles = {word: model.title for word, model in VARIANTS.items()}
     return {"linearizations": draw_errors(tables["slenderness"], titles)}

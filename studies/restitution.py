@@ -216,7 +216,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw the strikes of each engine's plainest and best way."""
-    from studies.drawing.lines import draw_strikes
+    from studies.drawing.figures import draw_strikes
 
     corners = tables["corners"]
     plain, best = corners.drop_duplicates("engine"), best_of(corners)

@@ -10,9 +10,9 @@ import pandas as pd
 
 from engines.factors import BEST
 from studies.cases.paper import sweep_cases
+from studies.kit.arguments import EffortOptions
 from studies.kit.arguments import figures as some_figures
 from studies.kit.jobs import Job, Question
-from studies.kit.options import EffortOptions
 from studies.kit.say import capital, listed, out_of, part
 from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.claims import claim

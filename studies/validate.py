@@ -15,9 +15,8 @@ from analytic import simulate
 from analytic.response import Outcome
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import Count, one_of
+from studies.kit.arguments import Count, EffortOptions, one_of
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.options import EffortOptions
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference

@@ -26,8 +26,8 @@ from studies.blocks.cabinets import Cabinet, Unit, read_cabinets
 from studies.blocks.fragility import MOST_ONSETS, fragility
 from studies.cases.accelerograms import Baseline, baseline_note, read_record
 from studies.kit import arguments
+from studies.kit.arguments import Running
 from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
-from studies.kit.options import Running
 from studies.kit.say import capital, out_of
 from studies.kit.scene_options import window_of
 from studies.kit.study import Figures, Study, Tables, stages

@@ -1,20 +1,19 @@
 """The blocks of a list, ranked by the factor on a record that overturns them first."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.font_manager import fontManager
 from matplotlib.lines import Line2D
 from scipy.stats import norm
 
 from studies.drawing.facets import key, sheet
-from studies.drawing.letters import families
 from studies.drawing.styles import look_at
 
 MOST_RECORDS = 5
@@ -23,6 +22,13 @@ MOST_NAMED = 6
 """Curves with a name in the key, of the blocks that overturn first."""
 MOST_DRAWN = 60
 """Blocks in the picture, those that overturn first."""
+FONTS = (
+    *("DejaVu Sans", "Noto Sans CJK JP", "Noto Sans JP", "IPAexGothic", "Yu Gothic"),
+    *("Hiragino Sans", "Meiryo", "Microsoft YaHei", "PingFang SC", "WenQuanYi Zen Hei"),
+    *("Malgun Gothic", "Noto Sans Devanagari", "Noto Sans Thai", "Noto Emoji"),
+    *("Segoe UI Emoji", "Symbola"),
+)
+"""Fonts that are used where they are installed; the first comes with matplotlib."""
 
 
 def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Figure:
@@ -127,3 +133,10 @@ def _draw_line(axes: Axes, line: dict[Any, Any], level: float, place: int) -> Li
 
 def _short(name: str) -> str:
     return name if len(name) <= 24 else f"{name[:23]}…"
+
+
+def families(words: Iterable[str]) -> list[str]:
+    """Return the fonts that such words are drawn in, as rcParams["font.family"] takes them."""
+    usual: list[str] = mpl.rcParams["font.family"]
+    there = set(fontManager.get_font_names())
+    return usual if all(map(str.isascii, words)) else [name for name in FONTS if name in there]

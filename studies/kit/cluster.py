@@ -22,7 +22,7 @@ from studies.kit.run import Measure, Place, Rows, local, lost_row, makers_of
 from studies.sources.registry import resolve
 
 if TYPE_CHECKING:
-    from studies.kit.options import Computing
+    from studies.kit.arguments import Computing
 
 CONNECT_S, ALONE_S = 10.0, 60.0
 """How long to wait for the scheduler and a first worker, and for one when all have died [s]."""

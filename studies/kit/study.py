@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 import pandas as pd
 from cyclopts import Parameter
 
-from studies.kit.arguments import Out, sources_option
+from studies.kit.arguments import Out, Running, sources_option
 from studies.kit.cluster import place_of
 from studies.kit.jobs import Job, Row, answer
-from studies.kit.options import Running
 from studies.kit.run import exit_code, makers_of, run
 from studies.kit.say import as_text
 from studies.kit.store import Store, provenance_of

@@ -13,7 +13,7 @@ from records import AT2
 
 from analytic.response import Response
 from studies.__main__ import run
-from studies.kit.options import EffortOptions
+from studies.kit.arguments import EffortOptions
 from studies.sources.registry import SOURCES, Source
 
 REFUSED = """
@@ -237,7 +237,7 @@ def test_what_arithmetic_raises_is_one_line_and_what_a_mistake_does_is_not(
     def broken(*_, **__):
         raise error
 
-    monkeypatch.setattr("studies.compare.command.compare", broken)
+    monkeypatch.setattr("studies.compare.compare", broken)
     line = ["compare", *CASE, "--sources", "exact"]
     if error in BY_MISTAKE:
         with pytest.raises(type(error)):
