@@ -9,16 +9,14 @@ radius, and half is the height by which its floor is raised.
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import ASLEEP, factor, level, moving_base
-from engines.parts import NO_JAM, fall, imported, iterations_for, returned
+from engines.parts import NO_JAM, Adapter, fall, imported, iterations_for, returned
 from engines.run.export import Notes, scaled
 from engines.scene import BASE, Scene
-from engines.settings import check, disagreement, setting
+from engines.settings import disagreement, setting
 from engines.shapes import Counted, floor_reach
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
+from engines.world import ContactPhase, FloatArray, Script, Step
 
 DEEPER = 3.0
 """By how many of a pivot's reaches a free corner above is out of reach before an impact."""
@@ -51,42 +49,32 @@ class Box2DSettings(Counted):
     floor: str = setting("velocity", names=("velocity", "both", "position"))
     restitution: float = setting(0.0, least=0.0, most=1.0)  # of a pair the larger one counts
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class Box2DWorld:
+class Box2DWorld(Adapter):
     """Bodies on one kinematic body, or on one for each corner of a block."""
 
-    moment = Moment.MIDDLE
+    library = "Box2D"
 
-    def __init__(
-        self, scene: Scene, settings: Box2DSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._box2d: Any = imported("Box2D") if library is None else library
-        s = self.settings = settings
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        s = self._s
         self._friction = float(s.friction)  # of a pair the root of the product counts
         self._unit, self._sunk = s.unit_of(scene), s.sunk_of(scene)
         self._reach = 0.5 * (s.margin or 0.0) * fall(scene, dt_s) * self._unit
         self._free = -self._reach  # height of the floor below a corner that is aloft
         iterations = iterations_for(scene, s.iterations, s.sweeps) or MANUAL_ITERATIONS
         self.iterations = iterations, s.position_iterations
-        self._way = s.floor if scene.frame == "world" else ""
-        self._dt = self._speed = self._place = self.lag_m = 0.0
         # a polygon acts from its skin on, and so does another one on it
         skins = s.skins_below * (1.0 if s.geometry == "corners" else 2.0)
-        self._lowered: float = skins * self._box2d.b2_polygonRadius
-        self.world = self._box2d.b2World(gravity=(0.0, 0.0))
+        self._lowered: float = skins * self._library.b2_polygonRadius
+        self.world = self._library.b2World(gravity=(0.0, 0.0))
         self.world.continuousPhysics = s.continuous
         self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
         self.floors = self._new_floors(floor_reach(scene) * self._unit)
         first = scene.bodies[0]
         self._half = 0.5 * first.width * self._unit, 0.5 * first.height * self._unit
-        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
-        self._fault = self._read_back(scene)
 
     def _new_body(self, scene: Scene, number: int) -> Any:
-        s, unit, body, box2d = self.settings, self._unit, scene.bodies[number], self._box2d
+        s, unit, body, box2d = self._s, self._unit, scene.bodies[number], self._library
         at, x, z = body.at, 0.5 * body.width * unit, 0.5 * body.height * unit
         place = (at.x * unit, at.z * unit - self._sunk)
         made = self.world.CreateDynamicBody(position=place, angle=-at.theta)
@@ -113,16 +101,16 @@ class Box2DWorld:
 
     def _new_corners(self, made: Any, x: float, z: float, on: int) -> None:
         """Make corners that meet a floor of their own side, or any body that rests on them."""
-        box2d = self._box2d
+        box2d = self._library
         for side in (0, 1):
             bits = (1 << side, 4 << side) if on == BASE else (16, 32)
             shape = box2d.b2CircleShape(pos=((-x, x)[side], z), radius=self._reach)
             meets = box2d.b2Filter(categoryBits=bits[0], maskBits=bits[1])
             corner = made.CreateFixture(shape=shape, friction=self._friction, filter=meets)
-            corner.restitution = self.settings.restitution
+            corner.restitution = self._s.restitution
 
     def _new_floors(self, far: float) -> list[Any]:
-        box2d, corners, top = self._box2d, self.settings.geometry == "corners", -self._lowered
+        box2d, corners, top = self._library, self._s.geometry == "corners", -self._lowered
         place, numbers = (0.0, self._reach - self._sunk), range(2 if corners else 1)
         floors = [self.world.CreateKinematicBody(position=place) for _ in numbers]
         for number, floor in enumerate(floors):
@@ -138,7 +126,7 @@ class Box2DWorld:
         """Advance by a step."""
         self.world.gravity = (step.pull_x * self._unit, step.pull_z * self._unit)
         before, self._dt = self._dt, step.dt_s
-        back = returned(step, before) if self.settings.reflection else 0.0
+        back = returned(step, before) if self._s.reflection else 0.0
         led = self._way == "velocity"
         at = (step.base_x - step.dt_s * step.base_velocity) * self._unit if self._way else 0.0
         felt = step.base_velocity * self._unit if self._way == "both" else 0.0
@@ -168,17 +156,13 @@ class Box2DWorld:
             self._state[number] = place, level, -body.angle, -body.angularVelocity
         return self._state
 
-    def fault(self) -> str:
-        """Say which setting was not taken."""
-        return self._fault
-
     def close(self) -> None:
         """Release the engine's memory."""
         for body in (*self.bodies, *self.floors):
             self.world.DestroyBody(body)
 
     def _read_back(self, scene: Scene) -> str:
-        body, s = self.bodies[0], self.settings
+        body, s = self.bodies[0], self._s
         pairs: dict[str, Any] = {
             "friction": (s.friction, body.fixtures[0].friction),
             "restitution": (s.restitution, body.fixtures[0].restitution),
@@ -200,9 +184,9 @@ class Box2DStacks(Box2DWorld):
     columns that part, whose friction and load would hold, too.
     """
 
-    def __init__(self, scene: Scene, settings: Box2DSettings, dt_s: float) -> None:
-        super().__init__(scene, settings, dt_s)
-        box2d, (*columns, beam) = self._box2d, self.bodies
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        super()._build(scene, dt_s)
+        box2d, (*columns, beam) = self._library, self.bodies
         self.world.warmStarting = False
         self._skin, (first,) = box2d.b2_polygonRadius, beam.fixtures
         apart = box2d.b2Filter(categoryBits=128, maskBits=64)

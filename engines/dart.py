@@ -11,16 +11,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import fall, imported, returned
+from engines.parts import Adapter, fall, imported, returned
 from engines.run.export import Notes, scaled
 from engines.scene import Scene
-from engines.settings import check, disagreement, one_of, setting
+from engines.settings import Settings, disagreement, one_of, setting
 from engines.shapes import Point, counted, floor_half_size, half_size, touching_spheres
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
+from engines.world import ContactPhase, FloatArray, Script, Step
 
 DETECTORS = {
     "DART": "DARTCollisionDetector",
@@ -42,7 +40,7 @@ FREE = {ContactPhase.APPROACH: -1.0, ContactPhase.STRIKE: 1.0}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DartSettings:
+class DartSettings(Settings):
     """Settings of DART, by default its own; None leaves a setting to the library."""
 
     # of corners, small spheres where those at the base are
@@ -81,25 +79,17 @@ class DartSettings:
     restitution: float | None = setting(least=0.0, most=1.0)  # the library multiplies both
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class DartWorld:
+class DartWorld(Adapter):
     """Bodies on a box whose joint is driven by its velocity, whether it moves or not."""
 
-    moment = Moment.MIDDLE
+    library = "dartpy"
 
-    def __init__(
-        self, scene: Scene, settings: DartSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._dart: Any = imported("dartpy") if library is None else library
-        self._s, self._unit = settings, settings.unit
-        self._way = settings.floor if scene.frame == "world" else ""
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        settings, self._unit = self._s, self._s.unit
         self._led = self._way in ("velocity", "servo")
         self._driven = bool(self._way) or settings.reflection
         self._margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
-        self._dt = self._speed = self._place = self.lag_m = 0.0
         self._half = counted(half_size(scene.bodies[0]), self._unit)
         self.coordinates = IN_PLANE if settings.planar else IN_SPACE
         # what rests on others lands with them
@@ -108,7 +98,7 @@ class DartWorld:
         self._corners: list[tuple[Any, Point]] = []
         self._shapes: list[Any] = []
         self.named: dict[str, list[Any]] = {name: [] for name in ("mount", "aside", "options")}
-        self.world = self._dart.simulation.World()
+        self.world = self._library.simulation.World()
         self._set_solver()
         self.mover, self.floor = self._new_base(scene)
         # a body lives as long as its skeleton, which only the world keeps
@@ -118,11 +108,10 @@ class DartWorld:
             for number, shape in enumerate(self._shapes):  # the product counts
                 coefficient = settings.restitution if number else settings.base_restitution
                 shape.getDynamicsAspect().setRestitutionCoeff(coefficient)
-        self._block, self._state = self.bodies[0], np.zeros((len(self.bodies), len(Pose._fields)))
-        self._fault = self._read_back(scene) if library is None else ""
+        self._block = self.bodies[0]
 
     def _set_solver(self) -> None:
-        s, dart, solver = self._s, self._dart, self.world.getConstraintSolver()
+        s, dart, solver = self._s, self._library, self.world.getConstraintSolver()
         if s.collision is not None:
             solver.setCollisionDetector(getattr(dart.collision, DETECTORS[s.collision])())
         if s.sleeping is not None:
@@ -137,16 +126,16 @@ class DartWorld:
 
     def _new_base(self, scene: Scene) -> Any:
         half = counted(floor_half_size(scene), self._unit)
-        base = self._dart.dynamics.Skeleton("base")
+        base = self._library.dynamics.Skeleton("base")
         drive, floor = base.createTranslationalJointAndBodyNodePair()
-        kinds = self._dart.dynamics.ActuatorType
+        kinds = self._library.dynamics.ActuatorType
         drive.setActuatorType(kinds.SERVO if self._s.floor == "servo" else kinds.VELOCITY)
         if self._s.aside:
             self.named["mount"].append(floor)
             aside, floor = base.createPrismaticJointAndBodyNodePair(floor)  # out of the plane
             aside.setAxis((0.0, 1.0, 0.0))
             self.named["aside"].append(aside)
-        box = self._dart.dynamics.BoxShape([2.0 * x for x in half])
+        box = self._library.dynamics.BoxShape([2.0 * x for x in half])
         self._shapes.append(self._attached(floor, box, (0.0, 0.0, -half[2])))
         self.world.addSkeleton(base)
         return drive, floor
@@ -154,7 +143,7 @@ class DartWorld:
     def _new_body(self, scene: Scene, number: int) -> Any:
         s, unit, body = self._s, self._unit, scene.bodies[number]
         at, half = body.at, counted(half_size(body), unit)
-        skeleton = self._dart.dynamics.Skeleton(f"block{number or ''}")
+        skeleton = self._library.dynamics.Skeleton(f"block{number or ''}")
         carried = scene.layout.rests(number)
         if self._together and carried:
             aside, between = skeleton.createPrismaticJointAndBodyNodePair()
@@ -170,11 +159,11 @@ class DartWorld:
         if s.exact_inertia:
             block.setMomentOfInertia(*(unit * unit * moment for moment in body.inertia))
         if s.geometry == "box" or carried:
-            box = self._dart.dynamics.BoxShape([2.0 * x for x in half])
+            box = self._library.dynamics.BoxShape([2.0 * x for x in half])
             self._shapes.append(self._attached(block, box, (0.0, 0.0, 0.0)))
         if s.geometry == "corners":
             radius = s.corner_radius * scene.system.width
-            ball = self._dart.dynamics.SphereShape(radius * unit)
+            ball = self._library.dynamics.SphereShape(radius * unit)
             for corner in touching_spheres(scene, number, radius, planar=s.planar):
                 place = counted(corner, unit)
                 self._shapes.append(self._attached(block, ball, place))
@@ -210,11 +199,7 @@ class DartWorld:
             self._drive(step)
         world.step(False)
         self._dt = step.dt_s
-        if self._led:
-            self._place = self.mover.getPosition(0)
-            self.lag_m = max(self.lag_m, abs(self._place / unit - step.base_x))
-        elif self._way:
-            self._place = step.base_x * unit
+        self._came(step, self.mover.getPosition(0) if self._led else None)
 
     @property
     def yaw(self) -> float | None:
@@ -232,7 +217,8 @@ class DartWorld:
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
-        return self._fault or disagreement({"step": (self._dt or None, self.world.getTimeStep())})
+        step = {"step": (self._dt or None, self.world.getTimeStep())}
+        return super().fault() or disagreement(step)
 
     def close(self) -> None:
         """Release the engine's memory."""

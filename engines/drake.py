@@ -17,13 +17,13 @@ import numpy as np
 
 from engines.declaration import Engine, Preset, Stepping, citations, default
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import NO_JAM, imported, yaw_of
+from engines.parts import NO_JAM, Adapter, imported, yaw_of
 from engines.run.export import Notes
 from engines.run.ground import mean_velocity_of
 from engines.scene import Scene
-from engines.settings import check, disagreement, given, setting
+from engines.settings import Settings, disagreement, given, setting
 from engines.shapes import floor_half_size, half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Script, Step
+from engines.world import FloatArray, Moment, Script, Step
 
 MODULES = (
     "geometry",
@@ -69,7 +69,7 @@ does a rotation's error in units of kappa: 5e-5 at 1e-8, 3e-5 at 2e-9, and no le
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DrakeSettings:
+class DrakeSettings(Settings):
     """Settings of Drake, by default its own; None leaves a setting to the library."""
 
     # a box touches in one point, its deepest; corners are small spheres at those
@@ -94,80 +94,85 @@ class DrakeSettings:
     accuracy: float | None = setting(above=0.0, most=1.0)
     floor: str = setting("drive", names=("drive", "position"))  # by its joint's drive, or by place
 
-    def __post_init__(self) -> None:
-        check(self)
+
+@cache
+def imported_parts() -> SimpleNamespace:
+    """Import the library; return all names of its parts together."""
+    names: dict[str, Any] = {}
+    for part in MODULES:
+        names |= vars(imported(f"pydrake.{part}"))
+    logging.getLogger("drake").setLevel(logging.ERROR)
+    return SimpleNamespace(**names)
 
 
-class DrakeWorld:
+class DrakeWorld(Adapter):
     """Bodies on a half-space that does not move, or on a box on a rail."""
 
-    def __init__(
-        self, scene: Scene, settings: DrakeSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._drake: Any = imported_parts() if library is None else library
-        self._s, self._dt, self._continuous = settings, dt_s, settings.solver == CENIC
+    library = staticmethod(imported_parts)
+
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        settings = self._s
+        self._ordinary, self._continuous = dt_s, settings.solver == CENIC
         self.moment = Moment.MIDDLE if settings.accuracy is None else Moment.END
-        self._count, self._time, self._place, self._problem = 0, 0.0, 0.0, ""
-        self._gravity, self._moving = scene.system.gravity, scene.frame == "world"
+        self._count, self._time, self._problem = 0, 0.0, ""
+        self._gravity, self._moving = scene.system.gravity, bool(self._way)
         self._velocity_of = mean_velocity_of(scene.motion.segments())
         self._radius = settings.corner_radius * scene.system.width
-        builder = self._drake.DiagramBuilder()
+        builder = self._library.DiagramBuilder()
         self.plant, self.graph = self._new_plant(scene, builder)
         self.properties = self._new_contact(scene)
-        self.ground, self._here = self.plant.world_body(), self._drake.RigidTransform()
-        self.blocks = self._drake.default_model_instance()
+        self.ground, self._here = self.plant.world_body(), self._library.RigidTransform()
+        self.blocks = self._library.default_model_instance()
         self.floor: Any = None
         self.rail: Any = None
         if self._moving:
             self.floor, self.rail = self._new_floor(scene)
         else:
-            self._add_shape(self.ground, self._here, self._drake.HalfSpace(), "base")
+            self._add_shape(self.ground, self._here, self._library.HalfSpace(), "base")
         turned = None
         if settings.planar:
-            turned = self._drake.RigidTransform(self._drake.RotationMatrix([*map(list, PLANE)]))
+            turned = self._library.RigidTransform(self._library.RotationMatrix([*map(list, PLANE)]))
         self.bodies = [self._new_body(scene, number, turned) for number in range(len(scene.bodies))]
         self.plant.Finalize()
-        self.simulator = self._drake.Simulator(builder.Build())
+        self.simulator = self._library.Simulator(builder.Build())
         root = self.simulator.get_mutable_context()
         self.context = self.plant.GetMyMutableContextFromRoot(root)
         self._begin(scene)
         if self._continuous:
             self._integrator = self._new_integrator(scene)
         self.simulator.Initialize()
-        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
-        if library is None:
-            self._field = self.plant.mutable_gravity_field()
-            self._fault = self._read_back(scene)
         if self._moving:
             instance = self.floor.model_instance()
-            self.desired, self.lag_m = self.plant.get_desired_state_input_port(instance), 0.0
+            self.desired = self.plant.get_desired_state_input_port(instance)
+        else:
+            self.lag_m = None
 
     def _new_plant(self, scene: Scene, builder: Any) -> Any:
         s, discrete = self._s, not self._continuous
         scale = scene.system.p * scene.system.R
         config = {
-            "time_step": self._dt if discrete else 0.0,
+            "time_step": self._ordinary if discrete else 0.0,
             "discrete_contact_approximation": s.solver if discrete else None,
             "stiction_tolerance": None if s.stiction is None else s.stiction * scale,
             "sap_near_rigid_threshold": s.near_rigid,
         }
-        made = self._drake.MultibodyPlantConfig(**given(config))
-        return self._drake.AddMultibodyPlant(made, builder)
+        made = self._library.MultibodyPlantConfig(**given(config))
+        return self._library.AddMultibodyPlant(made, builder)
 
     def _new_contact(self, scene: Scene) -> Any:
         """Return properties of a shape, which has half of a contact's stiffness and relaxation."""
         s, layout = self._s, scene.layout
         stiff, dissipation = s.stiffness, s.dissipation
         if stiff is not None:
-            stiff = 2.0 * stiff * layout.carried(layout.contacts[0]) / self._dt**2
+            stiff = 2.0 * stiff * layout.carried(layout.contacts[0]) / self._ordinary**2
         if dissipation is not None:
             dissipation = dissipation / (scene.system.p * scene.system.R)
-        properties = self._drake.ProximityProperties()
-        rough = self._drake.CoulombFriction(float(s.friction), float(s.friction))
+        properties = self._library.ProximityProperties()
+        rough = self._library.CoulombFriction(float(s.friction), float(s.friction))
         material = given({"point_stiffness": stiff, "dissipation": dissipation})
-        self._drake.AddContactMaterial(properties=properties, friction=rough, **material)
+        self._library.AddContactMaterial(properties=properties, friction=rough, **material)
         if s.relaxation is not None:
-            relaxation = 0.5 * s.relaxation * self._dt
+            relaxation = 0.5 * s.relaxation * self._ordinary
             properties.AddProperty("material", "relaxation_time", relaxation)
         return properties
 
@@ -176,7 +181,7 @@ class DrakeWorld:
 
     def _new_floor(self, scene: Scene) -> Any:
         """Return a box on a rail, which a drive leads, and its joint."""
-        drake, plant, half = self._drake, self.plant, floor_half_size(scene)
+        drake, plant, half = self._library, self.plant, floor_half_size(scene)
         size = [2.0 * x for x in half]
         inertia = drake.SpatialInertia.SolidBoxWithMass(scene.bodies[0].mass, *size)
         floor = plant.AddRigidBody("floor", plant.AddModelInstance("floor"), inertia)
@@ -189,7 +194,7 @@ class DrakeWorld:
         return floor, rail
 
     def _new_body(self, scene: Scene, number: int, turned: Any) -> Any:
-        s, drake, plant, body = self._s, self._drake, self.plant, scene.bodies[number]
+        s, drake, plant, body = self._s, self._library, self.plant, scene.bodies[number]
         name, size = f"block{number or ''}", [2.0 * half for half in half_size(body)]
         inertia = drake.SpatialInertia.SolidBoxWithMass(body.mass, *size)
         block = plant.AddRigidBody(name, self.blocks, inertia)
@@ -211,7 +216,7 @@ class DrakeWorld:
 
     def _begin(self, scene: Scene) -> None:
         """Put the bodies where, and as fast, as they begin."""
-        drake, begins = self._drake, [body.at for body in scene.bodies]
+        drake, begins = self._library, [body.at for body in scene.bodies]
         if self._s.planar:
             places = [q for at in begins for q in (at.z, at.x, at.theta)]
             speeds = [v for at in begins for v in (at.velocity_z, at.velocity_x, at.rate)]
@@ -229,8 +234,8 @@ class DrakeWorld:
         """Return what takes the steps of a continuous plant."""
         # without an estimate of the error each step goes to where it is told
         told, simulator = self._s.accuracy is None, self.simulator
-        longest = LONGEST * self._dt if told else self._dt
-        self._drake.ResetIntegratorFromFlags(simulator, scheme=CENIC, max_step_size=longest)
+        longest = LONGEST * self._ordinary if told else self._ordinary
+        self._library.ResetIntegratorFromFlags(simulator, scheme=CENIC, max_step_size=longest)
         integrator = simulator.get_mutable_integrator()
         integrator.set_fixed_step_mode(told)
         if self._s.accuracy is not None:
@@ -242,13 +247,13 @@ class DrakeWorld:
         """Advance by a step."""
         if self._problem:
             return
-        self._field.set_gravity_vector((step.pull_x, 0.0, step.pull_z))
+        self.plant.mutable_gravity_field().set_gravity_vector((step.pull_x, 0.0, step.pull_z))
         if self._moving:
             self._drive(step.base_x, step.base_velocity)
         self._count += 1
         self._time += step.dt_s
         # a discrete plant changes at the beginning of a step: half of one later it has, once
-        self._go_on(self._time if self._continuous else (self._count - 0.5) * self._dt)
+        self._go_on(self._time if self._continuous else (self._count - 0.5) * self._ordinary)
         if self._moving:
             self._look_back(step.base_x)
 
@@ -265,7 +270,7 @@ class DrakeWorld:
             return 1
         gained = self._velocity_of(end_s, end_s) - self._velocity_of(self._time, self._time)
         pull_x = 0.0 if self._moving else -gained / (end_s - self._time)
-        self._field.set_gravity_vector((pull_x, 0.0, -self._gravity))
+        self.plant.mutable_gravity_field().set_gravity_vector((pull_x, 0.0, -self._gravity))
         before = self._integrator.get_num_steps_taken()
         within = np.linspace(self._time, end_s, WITHIN + 1)[1:-1] if self._moving else ()
         for end in (*map(float, within), end_s):
@@ -317,7 +322,7 @@ class DrakeWorld:
 
     def fault(self) -> str:
         """Say which setting was not taken, or what the library gave up on."""
-        return self._fault or self._problem
+        return super().fault() or self._problem
 
     def close(self) -> None:
         """Release the engine's memory."""
@@ -335,22 +340,12 @@ class DrakeWorld:
             "mass": (body.mass, block.get_mass(self.context)),
             "moment": (body.inertia[1], turning[1]),
             "friction": (s.friction, friction),
-            "step": (0.0 if self._continuous else self._dt, plant.time_step()),
+            "step": (0.0 if self._continuous else self._ordinary, plant.time_step()),
         }
         if not self._continuous:
             taken = plant.get_discrete_contact_approximation().name.removeprefix("k").lower()
             pairs["solver"] = (s.solver, taken)
         return disagreement(pairs)
-
-
-@cache
-def imported_parts() -> SimpleNamespace:
-    """Import the library; return all names of its parts together."""
-    names: dict[str, Any] = {}
-    for part in MODULES:
-        names |= vars(imported(f"pydrake.{part}"))
-    logging.getLogger("drake").setLevel(logging.ERROR)
-    return SimpleNamespace(**names)
 
 
 def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:

@@ -10,16 +10,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import NO_JAM, imported, returned, yaw_of
+from engines.parts import NO_JAM, Adapter, imported, returned, yaw_of
 from engines.run.export import Notes, scaled
 from engines.scene import Scene
-from engines.settings import check, disagreement, given, setting
+from engines.settings import disagreement, given, setting
 from engines.shapes import Counted, counted, floor_half_size, half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Script, Step
+from engines.world import FloatArray, Script, Step
 
 MOST = 255
 """Iterations at most: the library counts them in eight bits."""
@@ -71,40 +69,31 @@ class PhysxSettings(Counted):
     floor: str = setting("target", names=("target", "belt", "position"))
     restitution: float = setting(0.1, least=0.0, most=1.0)  # of both; SAPIEN's own
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class PhysxWorld:
+class PhysxWorld(Adapter):
     """Bodies on a kinematic box, whether that moves or not."""
 
-    moment = Moment.MIDDLE
+    library = "sapien"
 
-    def __init__(
-        self, scene: Scene, settings: PhysxSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._sapien: Any = imported("sapien") if library is None else library
-        self._s, self._unit, self._sunk = settings, settings.unit_of(scene), settings.sunk_of(scene)
-        self._way = settings.floor if scene.frame == "world" else ""
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        settings = self._s
+        self._unit, self._sunk = settings.unit_of(scene), settings.sunk_of(scene)
         self._reflects, self._weight = settings.reflection, scene.system.gravity
-        self._dt = self._speed = self._place = self.lag_m = 0.0
         self._half = counted(half_size(scene.bodies[0]), self._unit)
-        self._state = np.zeros((len(scene.bodies), len(Pose._fields)))
-        wanted = self._set_library()
-        self.system = self._sapien.physx.PhysxCpuSystem()
-        self.stage = self._sapien.Scene([self.system])
+        self._wanted = self._set_library()
+        self.system = self._library.physx.PhysxCpuSystem()
+        self.stage = self._library.Scene([self.system])
         friction = float(settings.friction)
-        self.material = self._sapien.physx.PhysxMaterial(friction, friction, settings.restitution)
+        self.material = self._library.physx.PhysxMaterial(friction, friction, settings.restitution)
         self.base = self._new_base(scene)
         self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
-        self._fault = self._read_back(scene, *wanted) if library is None else ""
 
     def _set_library(self) -> tuple[dict[str, Any], ...]:
         """Set what the library has once for a process; return its settings of scene, body, shape.
 
         Its functions are told all settings together: what is not given is the default again.
         """
-        s, unit, physx = self._s, self._unit, self._sapien.physx
+        s, unit, physx = self._s, self._unit, self._library.physx
         bounce = None if s.bounce_threshold is None else s.bounce_threshold * unit
         sleep = None if s.sleeping in (None, True) else 0.0
         iterations = {
@@ -122,16 +111,16 @@ class PhysxWorld:
     def _new_base(self, scene: Scene) -> Any:
         x, y, z = floor_half_size(scene)
         half = counted((x, y, BASE_DEPTH * z), self._unit)
-        floor = self._sapien.physx.PhysxCollisionShapeBox(half, self.material)
-        floor.local_pose = self._sapien.Pose((0.0, 0.0, -half[2]))
-        base = self._sapien.physx.PhysxRigidDynamicComponent()
+        floor = self._library.physx.PhysxCollisionShapeBox(half, self.material)
+        floor.local_pose = self._library.Pose((0.0, 0.0, -half[2]))
+        base = self._library.physx.PhysxRigidDynamicComponent()
         base.attach(floor)
         base.kinematic = True
         self._place_at(base, (0.0, 0.0, -self._sunk))
         return base
 
     def _new_body(self, scene: Scene, number: int) -> Any:
-        s, unit, body, physx = self._s, self._unit, scene.bodies[number], self._sapien.physx
+        s, unit, body, physx = self._s, self._unit, scene.bodies[number], self._library.physx
         at, made = body.at, physx.PhysxRigidDynamicComponent()
         half = counted(half_size(body), unit)
         if s.geometry == "box":
@@ -142,13 +131,13 @@ class PhysxWorld:
             radius = CORNER * scene.bodies[0].height
             for corner in touching_spheres(scene, number, radius, planar=s.planar):
                 ball = physx.PhysxCollisionShapeSphere(radius * unit, self.material)
-                ball.local_pose = self._sapien.Pose(counted(corner, unit))
+                ball.local_pose = self._library.Pose(counted(corner, unit))
                 made.attach(ball)
             if scene.layout.rests(number):
                 made.attach(physx.PhysxCollisionShapeBox(half, self.material))
             made.mass = body.mass
             made.inertia = tuple(moment * unit**2 for moment in body.inertia)
-            made.cmass_local_pose = self._sapien.Pose()
+            made.cmass_local_pose = self._library.Pose()
         if s.angular_damping is not None:
             made.angular_damping = s.angular_damping
         if s.depenetration is not None:
@@ -163,9 +152,9 @@ class PhysxWorld:
         return made
 
     def _place_at(self, component: Any, *pose: Any) -> None:
-        entity = self._sapien.Entity()
+        entity = self._library.Entity()
         entity.add_component(component)
-        entity.pose = self._sapien.Pose(*pose)
+        entity.pose = self._library.Pose(*pose)
         self.stage.add_entity(entity)
 
     def step(self, step: Step) -> None:
@@ -180,11 +169,8 @@ class PhysxWorld:
             for body in self.bodies:
                 body.add_force_torque(pull, (0.0, 0.0, 0.0), "acceleration")
         self.system.step()
-        if self._way == "belt":
-            self._place = step.base_x * self._unit
-        elif self._way:
-            self._place = float(self.base.entity_pose.p[0])
-            self.lag_m = max(self.lag_m, abs(self._place / self._unit - step.base_x))
+        led = self._way not in ("", "belt")
+        self._came(step, float(self.base.entity_pose.p[0]) if led else None)
 
     @property
     def yaw(self) -> float | None:
@@ -204,7 +190,7 @@ class PhysxWorld:
     def fault(self) -> str:
         """Say which setting was not taken."""
         step = {"timestep": (self._dt or None, self.system.timestep)}
-        return self._fault or disagreement(step, Precision.SINGLE.value)
+        return super().fault() or disagreement(step, Precision.SINGLE.value)
 
     def close(self) -> None:
         """Release the engine's memory."""
@@ -226,7 +212,7 @@ class PhysxWorld:
         self.base.set_kinematic_target(self._at(place))
 
     def _at(self, x: float) -> Any:
-        return self._sapien.Pose((x, 0.0, -self._sunk))
+        return self._library.Pose((x, 0.0, -self._sunk))
 
     def _slip(self, side: float) -> float:
         """Return the velocity [units/s] at which the corner at a side slides on the base."""
@@ -234,12 +220,13 @@ class PhysxWorld:
         level = side * self._half[0] * math.sin(theta) + self._half[2] * math.cos(theta)
         return float(self.bodies[0].linear_velocity[0]) - rate * level - self._speed
 
-    def _read_back(self, scene: Scene, *wanted: dict[str, Any]) -> str:
+    def _read_back(self, scene: Scene) -> str:
         s, block = self._s, self.bodies[0]
         shape = block.collision_shapes[0]
+        places = self.system.config, block, shape
         pairs: dict[str, Any] = {
             name: (value, getattr(place, name))
-            for place, settings in zip((self.system.config, block, shape), wanted, strict=True)
+            for place, settings in zip(places, self._wanted, strict=True)
             for name, value in settings.items()
         }
         for number, (body, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):

@@ -10,16 +10,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import factor, level, moving_base
-from engines.parts import NO_JAM, fall, imported, iterations_for, returned
+from engines.parts import NO_JAM, Adapter, fall, imported, iterations_for, returned
 from engines.run.export import Notes, constant, scaled
 from engines.scene import BASE, Body, Scene
-from engines.settings import check, disagreement, setting
+from engines.settings import Settings, disagreement, setting
 from engines.shapes import floor_reach
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
+from engines.world import ContactPhase, FloatArray, Moment, Script, Step
 
 UNIT_S = 1e-3
 """Step [s] that the library is told where the positions are not its own to move."""
@@ -30,7 +28,7 @@ free corner would come to rest above the base."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PymunkSettings:
+class PymunkSettings(Settings):
     """Settings of pymunk; None leaves the library's default."""
 
     # one polygon on one segment, or points at the corners, each on a polygon of its own
@@ -52,25 +50,19 @@ class PymunkSettings:
     restitution: float = setting(0.0, least=0.0, most=1.0)
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class PymunkWorld:
+class PymunkWorld(Adapter):
     """Bodies on one that does not move by itself, in a `pymunk.Space`."""
 
-    def __init__(
-        self, scene: Scene, settings: PymunkSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._pymunk: Any = imported("pymunk") if library is None else library
-        self.settings, self._unit = settings, settings.unit
+    library = "pymunk"
+
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        settings, self._unit = self._s, self._s.unit
         self.moment = Moment.MIDDLE if settings.positions else Moment.NEXT
-        self._floor = settings.floor if scene.frame == "world" else ""
-        self._dt = self._under = self.lag_m = 0.0
         self.margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
         # free corners of bodies that rest on others must meet them together
         self._together = settings.positions and scene.stacked
-        self.space, slop = self._pymunk.Space(), settings.slop
+        self.space, slop = self._library.Space(), settings.slop
         self._wanted = {
             "iterations": iterations_for(scene, settings.iterations, settings.sweeps),
             "collision_slop": slop if settings.margin is None else 10.0 * self.margin,
@@ -79,7 +71,7 @@ class PymunkWorld:
         for name, value in self._wanted.items():
             if value is not None:
                 setattr(self.space, name, value)
-        self.base = self._pymunk.Body(body_type=self._pymunk.Body.KINEMATIC)
+        self.base = self._library.Body(body_type=self._library.Body.KINEMATIC)
         self.bodies = [self._new_body(body) for body in scene.bodies]
         self.pivots: list[float] = []
         self._at: list[tuple[float, float]] = []
@@ -89,16 +81,14 @@ class PymunkWorld:
         for shape in (*self.corners, *self.floors):
             shape.friction = constant(root, f"math.sqrt({float(settings.friction)!r})")
         self.space.add(self.base, *self.bodies, *self.corners, *self.floors)
-        if self._floor not in ("", "velocity"):
+        if self._way not in ("", "velocity"):
             self.base.position_func = stay
         for body in self.bodies if settings.positions else ():
             body.position_func = stay
-        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
-        self._fault = self._read_back(scene)
 
     def _new_body(self, body: Body) -> Any:
         unit, at = self._unit, body.at
-        made = self._pymunk.Body(body.mass, body.inertia[1] * unit**2)
+        made = self._library.Body(body.mass, body.inertia[1] * unit**2)
         made.position, made.angle = (at.x * unit, at.z * unit), -at.theta
         if not at.at_rest:
             made.velocity = (at.velocity_x * unit, at.velocity_z * unit)
@@ -108,8 +98,8 @@ class PymunkWorld:
     def _boxes(self, scene: Scene) -> tuple[list[Any], list[Any]]:
         far = floor_reach(scene) * self._unit
         pairs = zip(self.bodies, scene.bodies, strict=True)
-        boxes = [self._pymunk.Poly(made, boxed(body, self._unit)) for made, body in pairs]
-        return boxes, [self._pymunk.Segment(self.base, (-far, 0.0), (far, 0.0), 0.0)]
+        boxes = [self._library.Poly(made, boxed(body, self._unit)) for made, body in pairs]
+        return boxes, [self._library.Segment(self.base, (-far, 0.0), (far, 0.0), 0.0)]
 
     def _corners(self, scene: Scene) -> tuple[list[Any], list[Any]]:
         """Make the corners, and a floor for each, which meets that corner alone."""
@@ -126,39 +116,39 @@ class PymunkWorld:
             widest = 2.0 * self.margin if self._together else self.margin
             for side in (1.0, -1.0):
                 under, one = self.base if on == BASE else self.bodies[on], 1 << len(corners)
-                corners.append(self._pymunk.Circle(self.bodies[number], 0.0, (-side * x, z)))
-                floors.append(self._pymunk.Poly(under, ground, radius=widest))
+                corners.append(self._library.Circle(self.bodies[number], 0.0, (-side * x, z)))
+                floors.append(self._library.Poly(under, ground, radius=widest))
                 for shape in (corners[-1], floors[-1]):
-                    shape.filter = self._pymunk.ShapeFilter(categories=one, mask=one)
+                    shape.filter = self._library.ShapeFilter(categories=one, mask=one)
                 self.pivots.append(face * side)
                 self._at.append((-side * x, z))
         return corners, floors
 
     def step(self, step: Step) -> None:
         """Advance by a step."""
-        own, unit = self.settings.positions, self._unit
+        own, unit = self._s.positions, self._unit
         dt = UNIT_S if own else step.dt_s
         pull = unit * step.dt_s / dt
         self.space.gravity = (step.pull_x * pull, step.pull_z * pull)
         if self.pivots:
             self._hold(step)
-        if self._floor == "velocity":
-            self._under = self.base.position.x
-            self.base.velocity = ((step.base_x * unit - self._under) / step.dt_s, 0.0)
-        elif self._floor == "both":
+        if self._way == "velocity":
+            self._place = self.base.position.x
+            self.base.velocity = ((step.base_x * unit - self._place) / step.dt_s, 0.0)
+        elif self._way == "both":
             self.base.velocity = (step.base_velocity * unit, 0.0)
         self.space.step(dt)
-        if self._floor == "velocity":
+        if self._way == "velocity":
             self.lag_m = max(self.lag_m, abs(self.base.position.x / unit - step.base_x))
-        elif self._floor:
-            self._under = step.base_x * unit
-            self.base.position = (self._under, 0.0)
+        elif self._way:
+            self._place = step.base_x * unit
+            self.base.position = (self._place, 0.0)
         for body in self.bodies if own else ():
-            self._pymunk.Body.update_position(body, step.dt_s)
+            self._library.Body.update_position(body, step.dt_s)
 
     def _hold(self, step: Step) -> None:
         """Keep the pivot in contact, and give its velocity back while the block turns about it."""
-        s, before, self._dt = self.settings, self._dt, step.dt_s
+        s, before, self._dt = self._s, self._dt, step.dt_s
         back = returned(step, before) if s.reflection else 0.0
         bounce = s.restitution * s.base_restitution
         # equal steps do not say about which corner
@@ -179,15 +169,11 @@ class PymunkWorld:
 
     def state(self) -> FloatArray:
         """Read the poses back; a base that the library moves is a step ahead, and carries then."""
-        unit, under = self._unit, self._under
+        unit, under = self._unit, self._place
         for number, body in enumerate(self.bodies):
             x, z = body.position
             self._state[number] = (x - under) / unit, z / unit, -body.angle, -body.angular_velocity
         return self._state
-
-    def fault(self) -> str:
-        """Say which setting was not taken."""
-        return self._fault
 
     def close(self) -> None:
         """Release the engine's memory."""
@@ -195,7 +181,7 @@ class PymunkWorld:
 
     def _read_back(self, scene: Scene) -> str:
         friction = self.corners[0].friction * self.floors[0].friction
-        pairs: dict[str, Any] = {"friction": (self.settings.friction, friction)}
+        pairs: dict[str, Any] = {"friction": (self._s.friction, friction)}
         for name, value in self._wanted.items():
             pairs[name] = value, getattr(self.space, name)
         for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):

@@ -10,16 +10,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import ASLEEP, BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import NO_JAM, imported, iterations_for, returned, yaw_of
+from engines.parts import NO_JAM, Adapter, imported, iterations_for, returned, yaw_of
 from engines.run.export import Notes, scaled
 from engines.scene import Scene
-from engines.settings import check, disagreement, given, one_of, setting
+from engines.settings import disagreement, given, one_of, setting
 from engines.shapes import Counted, counted, floor_half_size, half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Script, Step
+from engines.world import FloatArray, Script, Step
 
 OVERDAMPED = 1e5
 """Damping ratio of a contact that corrects positions and is firm all the same."""
@@ -81,35 +79,26 @@ class RapierSettings(Counted):
     restitution: float = setting(0.0, least=0.0, most=1.0)
     base_restitution: float | None = setting(least=0.0, most=1.0)  # the block's by default
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class RapierWorld:
+class RapierWorld(Adapter):
     """Bodies on a kinematic box, whether that moves or not."""
 
-    moment = Moment.MIDDLE
+    library = "rapier3d"
 
-    def __init__(
-        self, scene: Scene, settings: RapierSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._rapier: Any = imported("rapier3d") if library is None else library
-        self._s, self._alpha = settings, scene.system.alpha
-        self._way = settings.floor if scene.frame == "world" else ""
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        s = self._s
         self._led = self._way in ("target", "velocity")
-        self._driven = bool(self._way) or settings.reflection
-        self._dt = self._speed = self._place = self.lag_m = 0.0
-        self._unit, self._sunk = settings.unit_of(scene), settings.sunk_of(scene)
+        self._driven = bool(self._way) or s.reflection
+        self._unit, self._sunk = s.unit_of(scene), s.sunk_of(scene)
         self._half = counted(half_size(scene.bodies[0]), self._unit)
-        self._iterations = iterations_for(scene, settings.iterations, settings.sweeps)
-        self.world = self._rapier.PhysicsWorld()
+        self._iterations = iterations_for(scene, s.iterations, s.sweeps)
+        self.world = self._library.PhysicsWorld()
         self.parameters = self.world.integration_parameters
         self.named: dict[str, list[Any]] = {"softness": [], "ball": []}  # as a script calls them
         self._set_solver(dt_s)
         self.base = self._new_base(scene)
         self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
-        self._body, self._state = self.bodies[0], np.zeros((len(self.bodies), len(Pose._fields)))
-        self._fault = self._read_back(scene) if library is None else ""
+        self._body = self.bodies[0]
 
     def _set_solver(self, dt_s: float) -> None:
         s = self._s
@@ -125,22 +114,22 @@ class RapierWorld:
         for name, value in given(settings).items():
             setattr(self.parameters, name, value)
         if s.coulomb is not None:
-            self.parameters.friction_model = self._rapier.FrictionModel.COULOMB
+            self.parameters.friction_model = self._library.FrictionModel.COULOMB
         spring = s.frequency, s.damping_ratio
         if s.correction is not None:
             # a spring of frequency f and damping ratio z takes the part dt / (dt + z / (pi f)) of a
             # depth out of it in a step dt
             spring = OVERDAMPED / (math.pi * s.correction * dt_s), OVERDAMPED
         if spring[0] is not None:
-            soft = self._rapier.SpringCoefficients(*spring)
+            soft = self._library.SpringCoefficients(*spring)
             self.parameters.contact_softness = self.parameters.static_contact_softness = soft
             self.named["softness"].append(soft)
 
     def _new_base(self, scene: Scene) -> Any:
-        s, kind = self._s, self._rapier.RigidBody
+        s, kind = self._s, self._library.RigidBody
         x, y, z = floor_half_size(scene)
         x, y, z = counted((x, y, s.base_depth * z), self._unit)
-        floor = self._rapier.Collider.cuboid(x, y, z).translation((0.0, 0.0, -z))
+        floor = self._library.Collider.cuboid(x, y, z).translation((0.0, 0.0, -z))
         restitution = s.restitution if s.base_restitution is None else s.base_restitution
         floor = floor.friction(float(s.friction)).restitution(restitution)
         targeted = self._way == "target"
@@ -150,7 +139,7 @@ class RapierWorld:
 
     def _new_body(self, scene: Scene, number: int) -> Any:
         s, unit, body = self._s, self._unit, scene.bodies[number]
-        at, collider, corners = body.at, self._rapier.Collider, s.geometry == "corners"
+        at, collider, corners = body.at, self._library.Collider, s.geometry == "corners"
         half = counted(half_size(body), unit)
         if corners:
             radius = s.corner_radius * scene.bodies[0].height
@@ -164,7 +153,7 @@ class RapierWorld:
             shapes = [collider.cuboid(*half).density(body.density / unit**3)]
         friction = float(s.friction)  # the mean of two counts
         shapes = [shape.friction(friction).restitution(s.restitution) for shape in shapes]
-        made = self._rapier.RigidBody.dynamic()
+        made = self._library.RigidBody.dynamic()
         made = made.translation((at.x * unit, 0.0, at.z * unit - self._sunk))
         if not at.at_rest:
             velocity = (at.velocity_x * unit, 0.0, at.velocity_z * unit)
@@ -176,7 +165,7 @@ class RapierWorld:
             made = made.can_sleep(s.sleeping)
         if corners:
             inertia = tuple(moment * unit**2 for moment in body.inertia)
-            mass = self._rapier.MassProperties((0.0, 0.0, 0.0), body.mass, inertia)
+            mass = self._library.MassProperties((0.0, 0.0, 0.0), body.mass, inertia)
             made = made.additional_mass_properties(mass)
         block = self.world.rigid_bodies[self.world.add_body(made, shapes)]
         block.recompute_mass_properties_from_colliders(self.world.colliders)  # else a step late
@@ -196,11 +185,7 @@ class RapierWorld:
             self._drive(step)
         self.world.step()
         self._dt = step.dt_s
-        if self._led:
-            self._place = self.base.translation.x
-            self.lag_m = max(self.lag_m, abs(self._place / self._unit - step.base_x))
-        elif self._way:
-            self._place = step.base_x * self._unit
+        self._came(step, self.base.translation.x if self._led else None)
 
     @property
     def yaw(self) -> float | None:
@@ -219,10 +204,10 @@ class RapierWorld:
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the block sleeps where none can rest."""
-        if self._body.is_sleeping and abs(self.state()[0, 2]) > ALOFT * self._alpha:
+        if self._body.is_sleeping and abs(self.state()[0, 2]) > ALOFT * self._scene.system.alpha:
             return "the library put the block to sleep aloft"
         step = {"dt": (self._dt or None, self.parameters.dt)}
-        return self._fault or disagreement(step, Precision.SINGLE.value)
+        return super().fault() or disagreement(step, Precision.SINGLE.value)
 
     def close(self) -> None:
         """Release the engine's memory."""

@@ -11,7 +11,7 @@ from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 
 from engines.declaration import Builder, Engine, Preset, landing
-from engines.settings import check, one_of, setting
+from engines.settings import Settings, one_of, setting
 
 FURTHER = "ROCKING_ENGINES"
 """Environment variable: engines that no package announces, as "name=module:ENGINE" with blanks
@@ -168,13 +168,10 @@ def find(name: str | Engine) -> Engine:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlainSettings:
+class PlainSettings(Settings):
     """The one setting that every engine must take: friction between block and base."""
 
     friction: float = setting(1.0, above=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
 
 def undeclared(name: str, build: Builder, library: str) -> Engine:

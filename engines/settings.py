@@ -98,6 +98,15 @@ def check(settings: Any) -> None:
             allowed.check(item.name, value)
 
 
+class Settings:
+    """Settings of an engine, which are checked when they are made."""
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
 def given(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings that are not left to the library."""
     return {name: value for name, value in settings.items() if value is not None}

@@ -12,7 +12,7 @@ import numpy as np
 from engines.parts import imported, iterations_for, silence, yaw_of
 from engines.run.export import Notes
 from engines.scene import Scene
-from engines.settings import check, disagreement, given, setting
+from engines.settings import Settings, disagreement, given, setting
 from engines.shapes import floor_half_size, half_size, hull_points, touching_spheres
 from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
 
@@ -59,7 +59,7 @@ idle: list[int] = []
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BulletSettings:
+class BulletSettings(Settings):
     """Settings of PyBullet, by default its own; None leaves a setting to the library."""
 
     # of corners, small spheres where those at the base are; of a hull, a convex mesh of all eight
@@ -103,9 +103,6 @@ class BulletSettings:
     # of a yielding contact, over m p^2; its damping is over m p
     contact_stiffness: float | None = setting(above=0.0, beside=("contact_damping",))
     contact_damping: float | None = setting(above=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
 
 class BulletWorld:
