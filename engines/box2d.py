@@ -11,7 +11,7 @@ from typing import Any
 
 from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import ASLEEP, factor, level, moving_base
-from engines.parts import NO_JAM, Adapter, fall, imported, iterations_for, returned
+from engines.parts import NO_JAM, Adapter, fall, iterations_for, returned
 from engines.run.export import Notes, scaled
 from engines.scene import BASE, Scene
 from engines.settings import disagreement, setting
@@ -54,6 +54,7 @@ class Box2DWorld(Adapter):
     """Bodies on one kinematic body, or on one for each corner of a block."""
 
     library = "Box2D"
+    called = "Box2D"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         s = self._s
@@ -174,6 +175,42 @@ class Box2DWorld(Adapter):
             pairs[f"inertia {number}"] = wanted.inertia[1] * self._unit**2, found.inertia
         return disagreement(pairs, Precision.SINGLE.value)
 
+    def _script(self, notes: Notes, way: str) -> Script:
+        unit = self._unit
+        notes.name(world=self.world, floor=self.floors)
+        notes.listed(floors=self.floors)
+        x, velocity, moves, led = scaled("base_x", unit), scaled("base_velocity", unit), [], ""
+        if way:
+            shift = f"    floor.position = {x} - DT * {velocity}, floor.position.y"
+            felt = {
+                "velocity": f"({x} - floor.position.x) / DT",
+                "both": velocity,
+                "position": "0.0",
+            }
+            moves = ["for floor in floors:", *([] if way == "velocity" else [shift])]
+            moves += [f"    floor.linearVelocity = {felt[way]}, 0.0"]
+            led = " - base_x"
+            if way == "velocity":
+                led = f" - floors[0].position.x / {unit!r}"
+        step = f"world.Step({{}}, {', '.join(map(str, self.iterations))})"
+        return Script(
+            imports=("import Box2D",),
+            settings=(
+                step.format(repr(self._ordinary)),
+                *notes.quoted(
+                    "continuous", "CreateFixture(", "filterData", "restitution", "sleeping"
+                ),
+            ),
+            build=notes.lines(),
+            step=(
+                f"world.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
+                *moves,
+                step.format("DT"),
+            ),
+            pose=("theta, rate = -bodies[number].angle, -bodies[number].angularVelocity",),
+            place=f"bodies[0].position.x / {unit!r}{led}",
+        )
+
 
 class Box2DStacks(Box2DWorld):
     """Columns that a beam rests on by a polygon for each side, whose skin says what touches it.
@@ -208,40 +245,6 @@ class Box2DStacks(Box2DWorld):
             shape.radius = max(self._skin + (reach if touches else free), 0.0)
         self._free = free
         super().step(step._replace(side=0.0) if strikes else step)
-
-
-def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Box2D; see `engines.run.export`."""
-    notes, unit = Notes(), settings.unit_of(scene)
-    world = Box2DWorld(scene, settings, dt_s, notes.of(imported("Box2D"), "Box2D"))
-    notes.name(world=world.world, floor=world.floors)
-    notes.name_bodies(world.bodies)
-    notes.listed(floors=world.floors)
-    x, velocity, moves, led = scaled("base_x", unit), scaled("base_velocity", unit), [], ""
-    if scene.frame == "world":
-        shift = f"    floor.position = {x} - DT * {velocity}, floor.position.y"
-        felt = {"velocity": f"({x} - floor.position.x) / DT", "both": velocity, "position": "0.0"}
-        moves = ["for floor in floors:", *([] if settings.floor == "velocity" else [shift])]
-        moves += [f"    floor.linearVelocity = {felt[settings.floor]}, 0.0"]
-        led = " - base_x"
-        if settings.floor == "velocity":
-            led = f" - floors[0].position.x / {unit!r}"
-    step = f"world.Step({{}}, {', '.join(map(str, world.iterations))})"
-    return Script(
-        imports=("import Box2D",),
-        settings=(
-            step.format(repr(dt_s)),
-            *notes.quoted("continuous", "CreateFixture(", "filterData", "restitution", "sleeping"),
-        ),
-        build=notes.lines(),
-        step=(
-            f"world.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
-            *moves,
-            step.format("DT"),
-        ),
-        pose=("theta, rate = -bodies[number].angle, -bodies[number].angularVelocity",),
-        place=f"bodies[0].position.x / {unit!r}{led}",
-    )
 
 
 TUNED = Box2DSettings(
@@ -317,6 +320,6 @@ ENGINE = Engine(
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,
-    script=script,
+    script=Box2DWorld.script,
     factors=FACTORS,
 )

@@ -13,7 +13,7 @@ from typing import Any
 
 from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import Adapter, fall, imported, returned
+from engines.parts import Adapter, fall, returned
 from engines.run.export import Notes, scaled
 from engines.scene import Scene
 from engines.settings import Settings, disagreement, one_of, setting
@@ -84,6 +84,7 @@ class DartWorld(Adapter):
     """Bodies on a box whose joint is driven by its velocity, whether it moves or not."""
 
     library = "dartpy"
+    called = "dart"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         settings, self._unit = self._s, self._s.unit
@@ -269,43 +270,39 @@ class DartWorld(Adapter):
             pairs[f"moment {number}"] = (moment, found.getInertia().getMoment()[1, 1])
         return disagreement(pairs)
 
-
-def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
-    """Return a scene as calls of DART; see `engines.run.export`."""
-    notes, unit = Notes(), settings.unit
-    world = DartWorld(scene, settings, dt_s, notes.of(imported("dartpy"), "dart"))
-    notes.name(world=world.world, drive=world.mover, floor=world.floor, joint=world.joints)
-    notes.name(**world.named)
-    notes.name_bodies(world.bodies)
-    notes.listed(joints=world.joints)
-    floor, (along, _, theta) = settings.floor if scene.frame == "world" else "", world.coordinates
-    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
-    led = [f"drive.setCommands((({x} - drive.getPosition(0)) / DT, 0.0, 0.0))"]
-    moves = {
-        **{"": [], "velocity": led, "servo": led},
-        "both": [
-            f"drive.setPositions(({x} - DT * {velocity}, 0.0, 0.0))",
-            f"drive.setCommands(({velocity}, 0.0, 0.0))",
-        ],
-    }
-    one_of("floor of a script", floor, moves)
-    under = {"": "", "both": f" - {x}"}.get(floor, " - drive.getPosition(0)")
-    words = ("Detector", "Solver(", "Enabled", "ZXPlane", "FrictionCoeff", "RestitutionCoeff")
-    return Script(
-        imports=("import dartpy as dart",),
-        settings=(f"world.setTimeStep({dt_s!r})", *notes.quoted(*words)),
-        build=(*notes.lines(), "world.setTimeStep(DT)"),
-        step=(
-            f"world.setGravity(({scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}))",
-            *moves[floor],
-            "world.step(False)",
-        ),
-        pose=(
-            f"theta = joints[number].getPosition({theta})",
-            f"rate = joints[number].getVelocity({theta})",
-        ),
-        place=f"(joints[0].getPosition({along}){under}) / {unit!r}",
-    )
+    def _script(self, notes: Notes, way: str) -> Script:
+        unit = self._unit
+        notes.name(world=self.world, drive=self.mover, floor=self.floor, joint=self.joints)
+        notes.name(**self.named)
+        notes.listed(joints=self.joints)
+        along, _, theta = self.coordinates
+        x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+        led = [f"drive.setCommands((({x} - drive.getPosition(0)) / DT, 0.0, 0.0))"]
+        moves = {
+            **{"": [], "velocity": led, "servo": led},
+            "both": [
+                f"drive.setPositions(({x} - DT * {velocity}, 0.0, 0.0))",
+                f"drive.setCommands(({velocity}, 0.0, 0.0))",
+            ],
+        }
+        one_of("floor of a script", way, moves)
+        under = {"": "", "both": f" - {x}"}.get(way, " - drive.getPosition(0)")
+        words = ("Detector", "Solver(", "Enabled", "ZXPlane", "FrictionCoeff", "RestitutionCoeff")
+        return Script(
+            imports=("import dartpy as dart",),
+            settings=(f"world.setTimeStep({self._ordinary!r})", *notes.quoted(*words)),
+            build=(*notes.lines(), "world.setTimeStep(DT)"),
+            step=(
+                f"world.setGravity(({scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}))",
+                *moves[way],
+                "world.step(False)",
+            ),
+            pose=(
+                f"theta = joints[number].getPosition({theta})",
+                f"rate = joints[number].getVelocity({theta})",
+            ),
+            place=f"(joints[0].getPosition({along}){under}) / {unit!r}",
+        )
 
 
 TUNED = DartSettings(
@@ -408,6 +405,6 @@ ENGINE = Engine(
         ),
     ),
     rest_factor=1.0,
-    script=script,
+    script=DartWorld.script,
     factors=FACTORS,
 )

@@ -139,26 +139,24 @@ class Preset:
 
     def at_rest(self) -> "Preset":
         """Return the same on a base at rest, of which no documentation speaks."""
-        return replace(self, name=AT_REST, title="", frame="base", documented=())
+        return self._changed(AT_REST, (), {}, frame="base")
 
     def recommended(
         self, *documented: Citation, step_s: float | None = None, **settings: Any
     ) -> "Preset":
         """Return the same with what is recommended, and where it is."""
-        return replace(
-            self,
-            name=RECOMMENDED,
-            title="",
-            settings=replace(self.settings, **settings),
-            step_s=step_s or self.step_s,
-            documented=documented,
-        )
+        return self._changed(RECOMMENDED, documented, settings, step_s=step_s or self.step_s)
 
     def pasted(self, *documented: Citation, **settings: Any) -> "Preset":
         """Return the same with a few lines to paste, on a base at rest at a friction of 0.8."""
-        changed = replace(self.settings, **{"friction": 0.8, **settings})
-        still = replace(self.at_rest(), name=PASTED, settings=changed, own={})
-        return replace(still, documented=documented, title=TITLES[PASTED])
+        rough = {"friction": 0.8, **settings}
+        return self._changed(PASTED, documented, rough, frame="base", own={})
+
+    def _changed(
+        self, name: str, documented: tuple[Citation, ...], settings: Mapping[str, Any], **own: Any
+    ) -> "Preset":
+        changed = replace(self.settings, **settings)
+        return replace(self, name=name, title="", settings=changed, documented=documented, **own)
 
     def takes(self, **settings: Any) -> bool:
         """Return whether its settings can be changed so."""

@@ -109,6 +109,7 @@ class DrakeWorld(Adapter):
     """Bodies on a half-space that does not move, or on a box on a rail."""
 
     library = staticmethod(imported_parts)
+    called = "drake"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         settings = self._s
@@ -347,54 +348,50 @@ class DrakeWorld(Adapter):
             pairs["solver"] = (s.solver, taken)
         return disagreement(pairs)
 
-
-def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Drake; see `engines.run.export`."""
-    notes, count, planar = Notes(), len(scene.bodies), settings.planar
-    world = DrakeWorld(scene, settings, dt_s, notes.of(imported_parts(), "drake"))
-    notes.name(
-        plant=world.plant, scene_graph=world.graph, properties=world.properties, ground=world.ground
-    )
-    notes.name(blocks=world.blocks, simulator=world.simulator, context=world.context)
-    notes.name_bodies(world.bodies)
-    moving, continuous = scene.frame == "world", settings.solver == CENIC
-    if moving:
-        notes.name(floor=world.floor, rail=world.rail, desired=world.desired)
-    turned = "-base_velocity])  # CENIC turns it round" if continuous else "base_velocity])"
-    if planar:
-        pose = ("theta = state[3 * number + 2]", f"rate = state[3 * number + {3 * count + 2}]")
-    else:
-        pose = (
-            "theta = 2.0 * math.atan2(state[7 * number + 2], state[7 * number])",
-            f"rate = state[6 * number + {7 * count + 1}]",
+    def _script(self, notes: Notes, way: str) -> Script:
+        count, planar = len(self.bodies), self._s.planar
+        notes.name(
+            plant=self.plant, scene_graph=self.graph, properties=self.properties, ground=self.ground
         )
-    along = (IN_PLANE if planar else IN_SPACE)[0]
-    words = (
-        "Config(",
-        "Friction(",
-        "Material(",
-        "AddProperty",
-        "Gains(",
-        "Integrator",
-        "set_",
-        "Sphere(",
-    )
-    return Script(
-        imports=("import pydrake.all as drake",),
-        settings=notes.quoted(*words),
-        # a discrete plant changes at the beginning of a step: half of one later it has, once
-        build=(*notes.lines(), f"end = {'0.0' if continuous else '-0.5 * DT'}"),
-        step=(
-            "global end",
-            "plant.mutable_gravity_field().set_gravity_vector((pull_x, 0.0, pull_z))",
-            *(f"desired.FixValue(context, [base_x, {turned}",) * moving,
-            "end += DT",
-            "simulator.AdvanceTo(end)",
-        ),
-        pose=("state = plant.GetPositionsAndVelocities(context, blocks)", *pose),
-        place=f"plant.GetPositions(context, blocks)[{along}]"
-        + " - rail.get_translation(context)" * moving,
-    )
+        notes.name(blocks=self.blocks, simulator=self.simulator, context=self.context)
+        moving, continuous = bool(way), self._s.solver == CENIC
+        if moving:
+            notes.name(floor=self.floor, rail=self.rail, desired=self.desired)
+        turned = "-base_velocity])  # CENIC turns it round" if continuous else "base_velocity])"
+        if planar:
+            pose = ("theta = state[3 * number + 2]", f"rate = state[3 * number + {3 * count + 2}]")
+        else:
+            pose = (
+                "theta = 2.0 * math.atan2(state[7 * number + 2], state[7 * number])",
+                f"rate = state[6 * number + {7 * count + 1}]",
+            )
+        along = (IN_PLANE if planar else IN_SPACE)[0]
+        words = (
+            "Config(",
+            "Friction(",
+            "Material(",
+            "AddProperty",
+            "Gains(",
+            "Integrator",
+            "set_",
+            "Sphere(",
+        )
+        return Script(
+            imports=("import pydrake.all as drake",),
+            settings=notes.quoted(*words),
+            # a discrete plant changes at the beginning of a step: half of one later it has, once
+            build=(*notes.lines(), f"end = {'0.0' if continuous else '-0.5 * DT'}"),
+            step=(
+                "global end",
+                "plant.mutable_gravity_field().set_gravity_vector((pull_x, 0.0, pull_z))",
+                *(f"desired.FixValue(context, [base_x, {turned}",) * moving,
+                "end += DT",
+                "simulator.AdvanceTo(end)",
+            ),
+            pose=("state = plant.GetPositionsAndVelocities(context, blocks)", *pose),
+            place=f"plant.GetPositions(context, blocks)[{along}]"
+            + " - rail.get_translation(context)" * moving,
+        )
 
 
 CONFIG = "MultibodyPlantConfig, drake 1.51.1"
@@ -493,6 +490,6 @@ ENGINE = Engine(
             accuracy_knob=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 2e-9)),
         ),
     ),
-    script=script,
+    script=DrakeWorld.script,
     factors=FACTORS,
 )

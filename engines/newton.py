@@ -12,8 +12,6 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from engines.declaration import Engine, Precision, Preset, citations, default
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.parts import NO_JAM, Adapter, imported, silence, yaw_of

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from engines.run.export import Notes
 from engines.scene import Scene
-from engines.world import ContactPhase, Moment, Pose, Step
+from engines.world import ContactPhase, Moment, Pose, Script, Step
 
 NO_JAM = 1.3
 """Friction just below 4/3, from which on a corner of a homogeneous block may jam (Painlevé's
@@ -92,7 +93,8 @@ def imported(library: str) -> Any:
 class Adapter:
     """What worlds have alike: their settings, a base that may move, and what is read back.
 
-    `_build(scene, dt_s)` builds the scene, `_read_back(scene)` says which setting was not taken.
+    `_build(scene, dt_s)` builds the scene, `_read_back(scene)` says which setting was not taken,
+    and `_script(notes, way)` writes it for somebody who has the library alone, `called` something.
     `_way` is how a base that moves is moved, "" where it is at rest; `_place` and `_speed` are its
     own, in units of length.
     """
@@ -103,11 +105,15 @@ class Adapter:
     _unit = 1.0
     _build: Any
     _read_back: Any
+    _script: Any
+    bodies: list[Any]
+    called: str
+    without: tuple[str, ...] = ()
 
     def __init__(self, scene: Scene, settings: Any, dt_s: float, library: Any = None) -> None:
         own = self.library
         self._library: Any = library or (own() if callable(own) else imported(own))
-        self._s, self._scene = settings, scene
+        self._s, self._scene, self._ordinary = settings, scene, dt_s
         self._way: str = settings.floor if scene.frame == "world" else ""
         self._dt = self._speed = self._place = self.lag_m = 0.0
         self._state = np.zeros((len(scene.bodies), len(Pose._fields)))
@@ -120,6 +126,16 @@ class Adapter:
             self._place, self.lag_m = place, max(self.lag_m, abs(place / self._unit - step.base_x))
         elif self._way:
             self._place = step.base_x * self._unit
+
+    @classmethod
+    def script(cls, scene: Scene, settings: Any, dt_s: float) -> Script:
+        """Return a scene as calls of the library; see `engines.run.export`."""
+        notes, own = Notes(cls.without), cls.library
+        library = own() if callable(own) else imported(own)
+        made = cls(scene, settings, dt_s, notes.of(library, cls.called))
+        notes.name_bodies(made.bodies)
+        said: Script = made._script(notes, made._way)
+        return said
 
     def fault(self) -> str:
         """Say which setting was not taken."""

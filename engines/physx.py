@@ -12,7 +12,7 @@ from typing import Any
 
 from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import NO_JAM, Adapter, imported, returned, yaw_of
+from engines.parts import NO_JAM, Adapter, returned, yaw_of
 from engines.run.export import Notes, scaled
 from engines.scene import Scene
 from engines.settings import disagreement, given, setting
@@ -74,6 +74,7 @@ class PhysxWorld(Adapter):
     """Bodies on a kinematic box, whether that moves or not."""
 
     library = "sapien"
+    called = "sapien"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         settings = self._s
@@ -243,55 +244,50 @@ class PhysxWorld(Adapter):
         }
         return disagreement(pairs, Precision.SINGLE.value)
 
-
-def script(scene: Scene, settings: PhysxSettings, dt_s: float) -> Script:
-    """Return a scene as calls of SAPIEN; see `engines.run.export`."""
-    notes, unit, weight = Notes(), settings.unit_of(scene), scene.system.gravity
-    world = PhysxWorld(scene, settings, dt_s, notes.of(imported("sapien"), "sapien"))
-    notes.name(system=world.system, stage=world.stage, material=world.material, floor=world.base)
-    notes.name_bodies(world.bodies)
-    floor = settings.floor if scene.frame == "world" else ""
-    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
-    far = "0.0, floor.entity_pose.p[2]]))"
-    moves = {
-        "": [],
-        "belt": [
-            f"floor.entity.pose = sapien.Pose([-DT * {velocity}, {far[:-1]}",
-            f"floor.set_kinematic_target(sapien.Pose([0.0, {far}",
-        ],
-        "target": [f"floor.set_kinematic_target(sapien.Pose([{x}, {far}"],
-        "position": [f"floor.entity.pose = sapien.Pose([{x}, {far[:-1]}"],
-    }
-    under = {"": "", "belt": f" - {x}"}.get(floor, " - float(floor.entity_pose.p[0])")
-    pull = ", 0.0, ".join(scaled(axis, unit) for axis in ("pull_x", f"(pull_z + {weight!r})"))
-    words = (
-        "_config(",
-        "Material(",
-        "damping",
-        "depenetration",
-        "locked_motion",
-        "Sphere",
-        "block.inertia",
-    )
-    return Script(
-        imports=("import sapien",),
-        settings=notes.quoted(*words),
-        build=(*notes.lines(), "system.timestep = DT"),
-        step=(
-            f"pull = {pull}",
-            f"if abs(pull_x) + abs(pull_z + {weight!r}) > {NOTHING * weight!r}:",
-            "    for body in bodies:",
-            "        body.add_force_torque(pull, (0.0, 0.0, 0.0), 'acceleration')",
-            *moves[floor],
-            "system.step()",
-        ),
-        pose=(
-            "turn = bodies[number].entity_pose.q",
-            "theta = 2.0 * math.atan2(turn[2], turn[0])",
-            "rate = float(bodies[number].angular_velocity[1])",
-        ),
-        place=f"(float(bodies[0].entity_pose.p[0]){under}) / {unit!r}",
-    )
+    def _script(self, notes: Notes, way: str) -> Script:
+        unit, weight = self._unit, self._weight
+        notes.name(system=self.system, stage=self.stage, material=self.material, floor=self.base)
+        x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+        far = "0.0, floor.entity_pose.p[2]]))"
+        moves = {
+            "": [],
+            "belt": [
+                f"floor.entity.pose = sapien.Pose([-DT * {velocity}, {far[:-1]}",
+                f"floor.set_kinematic_target(sapien.Pose([0.0, {far}",
+            ],
+            "target": [f"floor.set_kinematic_target(sapien.Pose([{x}, {far}"],
+            "position": [f"floor.entity.pose = sapien.Pose([{x}, {far[:-1]}"],
+        }
+        under = {"": "", "belt": f" - {x}"}.get(way, " - float(floor.entity_pose.p[0])")
+        pull = ", 0.0, ".join(scaled(axis, unit) for axis in ("pull_x", f"(pull_z + {weight!r})"))
+        words = (
+            "_config(",
+            "Material(",
+            "damping",
+            "depenetration",
+            "locked_motion",
+            "Sphere",
+            "block.inertia",
+        )
+        return Script(
+            imports=("import sapien",),
+            settings=notes.quoted(*words),
+            build=(*notes.lines(), "system.timestep = DT"),
+            step=(
+                f"pull = {pull}",
+                f"if abs(pull_x) + abs(pull_z + {weight!r}) > {NOTHING * weight!r}:",
+                "    for body in bodies:",
+                "        body.add_force_torque(pull, (0.0, 0.0, 0.0), 'acceleration')",
+                *moves[way],
+                "system.step()",
+            ),
+            pose=(
+                "turn = bodies[number].entity_pose.q",
+                "theta = 2.0 * math.atan2(turn[2], turn[0])",
+                "rate = float(bodies[number].angular_velocity[1])",
+            ),
+            place=f"(float(bodies[0].entity_pose.p[0]){under}) / {unit!r}",
+        )
 
 
 TUNED = PhysxSettings(
@@ -413,6 +409,6 @@ ENGINE = Engine(
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,
-    script=script,
+    script=PhysxWorld.script,
     factors=FACTORS,
 )

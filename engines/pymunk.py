@@ -12,7 +12,7 @@ from typing import Any
 
 from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import factor, level, moving_base
-from engines.parts import NO_JAM, Adapter, fall, imported, iterations_for, returned
+from engines.parts import NO_JAM, Adapter, fall, iterations_for, returned
 from engines.run.export import Notes, constant, scaled
 from engines.scene import BASE, Body, Scene
 from engines.settings import Settings, disagreement, setting
@@ -55,6 +55,7 @@ class PymunkWorld(Adapter):
     """Bodies on one that does not move by itself, in a `pymunk.Space`."""
 
     library = "pymunk"
+    called = "pymunk"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         settings, self._unit = self._s, self._s.unit
@@ -189,6 +190,46 @@ class PymunkWorld(Adapter):
             pairs[f"moment {number}"] = wanted.inertia[1] * self._unit**2, found.moment
         return disagreement(pairs)
 
+    def _script(self, notes: Notes, way: str) -> Script:
+        unit = self._unit
+        notes.name(space=self.space, base=self.base, floor=self.floors)
+        notes.name(**{"box" if self._s.geometry == "box" else "corner": self.corners})
+        hold = []
+        x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+        if self.margin:  # the corner about which the block turns is kept in contact
+            notes.listed(floors=self.floors)
+            held = f"{self.margin!r} if -side * bodies[0].angle >= {-LEVEL!r} else 0.0"
+            hold.append(f"for side, floor in zip({self.pivots}, floors):")
+            hold.append(f"    floor.unsafe_set_radius({held})")
+        moves = {"velocity": f"({x} - base.position.x) / DT", "both": velocity}
+        under = " - base.position.x" * bool(way)
+        if way == "velocity":  # a base that the library moves is a step ahead
+            under += " + DT * base.velocity.x"
+        place = f"bodies[0].position.x{under}"
+        return Script(
+            imports=(
+                "import pymunk",
+                *("stay = lambda body, dt: None",) * (way not in ("", "velocity")),
+            ),
+            settings=(
+                f"space.step({self._ordinary!r})",
+                *notes.quoted(
+                    "iterations", "collision_", ".Circle(", ".Poly(", ".filter", ".friction"
+                ),
+            ),
+            build=notes.lines(),
+            step=(
+                *hold,
+                *(f"base.velocity = {moves[each]}, 0.0" for each in moves if each == way),
+                f"space.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
+                "space.step(DT)",
+                *(f"base.position = {x}, 0.0",) * (way not in ("", "velocity")),
+            ),
+            pose=("theta, rate = -bodies[number].angle, -bodies[number].angular_velocity",),
+            place=place if unit == 1.0 else f"({place}) / {unit!r}",
+            moment=self.moment,
+        )
+
 
 def boxed(body: Body, unit: float, deeper: float = 0.0) -> list[tuple[float, float]]:
     """Return the corners of a body, about its centre, the lower face so much deeper in it."""
@@ -198,48 +239,6 @@ def boxed(body: Body, unit: float, deeper: float = 0.0) -> list[tuple[float, flo
 
 def stay(body: Any, dt: float) -> None:
     """Leave a body where it is: the adapter moves it."""
-
-
-def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
-    """Return a scene as calls of pymunk; see `engines.run.export`."""
-    notes, unit = Notes(), settings.unit
-    world = PymunkWorld(scene, settings, dt_s, notes.of(imported("pymunk"), "pymunk"))
-    notes.name(space=world.space, base=world.base, floor=world.floors)
-    notes.name(**{"box" if settings.geometry == "box" else "corner": world.corners})
-    notes.name_bodies(world.bodies)
-    hold, floor = [], settings.floor if scene.frame == "world" else ""
-    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
-    if world.margin:  # the corner about which the block turns is kept in contact
-        notes.listed(floors=world.floors)
-        held = f"{world.margin!r} if -side * bodies[0].angle >= {-LEVEL!r} else 0.0"
-        hold.append(f"for side, floor in zip({world.pivots}, floors):")
-        hold.append(f"    floor.unsafe_set_radius({held})")
-    moves = {"velocity": f"({x} - base.position.x) / DT", "both": velocity}
-    under = " - base.position.x" * bool(floor)
-    if floor == "velocity":  # a base that the library moves is a step ahead
-        under += " + DT * base.velocity.x"
-    place = f"bodies[0].position.x{under}"
-    return Script(
-        imports=(
-            "import pymunk",
-            *("stay = lambda body, dt: None",) * (floor not in ("", "velocity")),
-        ),
-        settings=(
-            f"space.step({dt_s!r})",
-            *notes.quoted("iterations", "collision_", ".Circle(", ".Poly(", ".filter", ".friction"),
-        ),
-        build=notes.lines(),
-        step=(
-            *hold,
-            *(f"base.velocity = {moves[way]}, 0.0" for way in moves if way == floor),
-            f"space.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
-            "space.step(DT)",
-            *(f"base.position = {x}, 0.0",) * (floor not in ("", "velocity")),
-        ),
-        pose=("theta, rate = -bodies[number].angle, -bodies[number].angular_velocity",),
-        place=place if unit == 1.0 else f"({place}) / {unit!r}",
-        moment=world.moment,
-    )
 
 
 TUNED = PymunkSettings(
@@ -305,6 +304,6 @@ ENGINE = Engine(
             stacked={"sweeps": 400.0},  # the heavier what rests on others, the slower they converge
         ),
     ),
-    script=script,
+    script=PymunkWorld.script,
     factors=FACTORS,
 )

@@ -12,7 +12,7 @@ from typing import Any
 
 from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import ASLEEP, BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import NO_JAM, Adapter, imported, iterations_for, returned, yaw_of
+from engines.parts import NO_JAM, Adapter, iterations_for, returned, yaw_of
 from engines.run.export import Notes, scaled
 from engines.scene import Scene
 from engines.settings import disagreement, given, one_of, setting
@@ -84,6 +84,7 @@ class RapierWorld(Adapter):
     """Bodies on a kinematic box, whether that moves or not."""
 
     library = "rapier3d"
+    called = "rapier"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         s = self._s
@@ -238,44 +239,39 @@ class RapierWorld(Adapter):
             pairs[f"mass {number}"] = (body.mass, self.bodies[number].mass)
         return disagreement(pairs, Precision.SINGLE.value)
 
-
-def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Rapier; see `engines.run.export`."""
-    notes, unit = Notes(), settings.unit_of(scene)
-    world = RapierWorld(scene, settings, dt_s, notes.of(imported("rapier3d"), "rapier"))
-    notes.name(world=world.world, floor=world.base, **world.named)
-    notes.name_bodies(world.bodies)
-    floor = settings.floor if scene.frame == "world" else ""
-    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
-    moves = {
-        "target": [f"floor.set_next_kinematic_translation(({x}, 0.0, floor.translation.z))"],
-        "velocity": [f"floor.linvel = ({x} - floor.translation.x) / DT, 0.0, 0.0"],
-        "both": [
-            f"floor.translation = {x} - DT * {velocity}, 0.0, floor.translation.z",
-            f"floor.linvel = {velocity}, 0.0, 0.0",
-        ],
-        "": [],
-    }
-    one_of("floor of a script", floor, tuple(moves))
-    under = {"": "", "both": f" - {x}"}.get(floor, " - floor.translation.x")
-    return Script(
-        imports=("import rapier3d as rapier",),
-        settings=(
-            f"world.integration_parameters.dt = {dt_s!r}",
-            *notes.quoted("parameters.", "Spring", ".friction(", "can_sleep", "enabled_"),
-        ),
-        build=(*notes.lines(), "world.integration_parameters.dt = DT"),
-        step=(
-            f"world.gravity = {scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}",
-            *moves[floor],
-            "world.step()",
-        ),
-        pose=(
-            "turn = bodies[number].rotation",
-            "theta, rate = 2.0 * math.atan2(turn.j, turn.w), bodies[number].angvel.y",
-        ),
-        place=f"(bodies[0].translation.x{under}) / {unit!r}",
-    )
+    def _script(self, notes: Notes, way: str) -> Script:
+        unit = self._unit
+        notes.name(world=self.world, floor=self.base, **self.named)
+        x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+        moves = {
+            "target": [f"floor.set_next_kinematic_translation(({x}, 0.0, floor.translation.z))"],
+            "velocity": [f"floor.linvel = ({x} - floor.translation.x) / DT, 0.0, 0.0"],
+            "both": [
+                f"floor.translation = {x} - DT * {velocity}, 0.0, floor.translation.z",
+                f"floor.linvel = {velocity}, 0.0, 0.0",
+            ],
+            "": [],
+        }
+        one_of("floor of a script", way, tuple(moves))
+        under = {"": "", "both": f" - {x}"}.get(way, " - floor.translation.x")
+        return Script(
+            imports=("import rapier3d as rapier",),
+            settings=(
+                f"self.integration_parameters.dt = {self._ordinary!r}",
+                *notes.quoted("parameters.", "Spring", ".friction(", "can_sleep", "enabled_"),
+            ),
+            build=(*notes.lines(), "self.integration_parameters.dt = DT"),
+            step=(
+                f"world.gravity = {scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}",
+                *moves[way],
+                "world.step()",
+            ),
+            pose=(
+                "turn = bodies[number].rotation",
+                "theta, rate = 2.0 * math.atan2(turn.j, turn.w), bodies[number].angvel.y",
+            ),
+            place=f"(bodies[0].translation.x{under}) / {unit!r}",
+        )
 
 
 TUNED = RapierSettings(
@@ -412,6 +408,6 @@ ENGINE = Engine(
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,
-    script=script,
+    script=RapierWorld.script,
     factors=FACTORS,
 )

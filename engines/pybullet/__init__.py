@@ -5,7 +5,7 @@ from typing import Any
 
 from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import BEST, BOTH, DEFAULT, factor, level, moving_base
-from engines.pybullet.build import LIBRARY_STEP_S, BulletSettings, BulletWorld, script
+from engines.pybullet.build import LIBRARY_STEP_S, BulletSettings, BulletWorld
 
 TUNED = BulletSettings(
     geometry="corners",
@@ -170,6 +170,6 @@ ENGINE = Engine(
         ),
     ),
     core=True,
-    script=script,
+    script=BulletWorld.script,
     factors=FACTORS,
 )
