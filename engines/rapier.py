@@ -257,10 +257,10 @@ class RapierWorld(Adapter):
         return Script(
             imports=("import rapier3d as rapier",),
             settings=(
-                f"self.integration_parameters.dt = {self._ordinary!r}",
+                f"world.integration_parameters.dt = {self._ordinary!r}",
                 *notes.quoted("parameters.", "Spring", ".friction(", "can_sleep", "enabled_"),
             ),
-            build=(*notes.lines(), "self.integration_parameters.dt = DT"),
+            build=(*notes.lines(), "world.integration_parameters.dt = DT"),
             step=(
                 f"world.gravity = {scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}",
                 *moves[way],
