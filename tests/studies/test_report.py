@@ -16,7 +16,7 @@ from given import BLOCK
 from analytic import SinePulse, simulate
 from analytic.block import GRAVITY
 from studies.measures.published import PUBLISHED
-from studies.page import page, report
+from studies.page import chapters, page
 from studies.page.chapters import PARTS
 from studies.page.page import AXES, engine_cases
 
@@ -36,11 +36,11 @@ def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     parts = tuple(replace(SMALL_OF[f], quick=words) for f, words in SMALL.items())
     with pytest.MonkeyPatch.context() as patch:
-        for module in (page, report):
+        for module in (page, chapters):
             patch.setattr(module, "PARTS", parts)
         patch.setattr(page, "CHAPTERS", {"A chapter": parts})
         patch.setattr(page, "SHOWN", FEW)
-        assert report.command(out=folder) == 0
+        assert chapters.command(out=folder) == 0
     return folder
 
 
@@ -106,8 +106,8 @@ def test_the_engines_answers_are_those_of_the_tables():
 
 
 def test_a_report_is_resumed_and_not_mixed(made, monkeypatch):
-    with pytest.raises(report.FolderError, match="quick report"):
-        report.command(out=made, full=True)
+    with pytest.raises(chapters.FolderError, match="quick report"):
+        chapters.command(out=made, full=True)
 
 
 AMPLITUDE = 0.43333333 * GRAVITY
