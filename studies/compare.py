@@ -22,9 +22,8 @@ from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import PULSES
 from studies.kit import arguments
 from studies.kit.arguments import Computing, EffortOptions, Yours
-from studies.kit.cluster import place_of
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.run import Place, exit_code, here, run, with_response
+from studies.kit.run import Place, exit_code, here, place_of, run, with_response
 from studies.kit.say import aligned, duration, number
 from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
 from studies.measures.differences import conditioning_of_one

@@ -16,10 +16,9 @@ from engines.run.steps import begin_of
 from engines.settings import perhaps
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import Computing, Place, Step, TimeLimit, Yours, refuse_both
-from studies.kit.cluster import place_of
 from studies.kit.identity import version_of
 from studies.kit.jobs import Job, Question
-from studies.kit.run import exit_code, run, with_response
+from studies.kit.run import exit_code, place_of, run, with_response
 from studies.kit.say import listed
 from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
 from studies.kit.store import project_version

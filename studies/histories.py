@@ -15,8 +15,7 @@ from studies.kit.arguments import figures as some_figures
 from studies.kit.arguments import sources_option
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import capital, out_of
-from studies.kit.study import Figures, Study, Tables, stages
-from studies.measures.claims import claim
+from studies.kit.study import Figures, Study, Tables, claim, stages
 from studies.measures.history import samples
 
 LINEAR = ("exact", "housner", "modified")

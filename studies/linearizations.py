@@ -15,8 +15,7 @@ from analytic.motion import SinePulse
 from studies.cases.paper import PULSES, sweep_cases
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import out_of, part
-from studies.kit.study import Figures, Study, Tables, stages
-from studies.measures.claims import Finding
+from studies.kit.study import Figures, Finding, Study, Tables, stages
 from studies.measures.differences import posed_cases
 from studies.measures.wrongness import wrong_in
 

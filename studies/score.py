@@ -20,9 +20,8 @@ from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments
 from studies.kit.arguments import Out, Place, Running
-from studies.kit.cluster import place_of
 from studies.kit.jobs import Job, Question, Row, answer, unanswered
-from studies.kit.run import makers_of, run
+from studies.kit.run import makers_of, place_of, run
 from studies.kit.say import duration, in_columns, one_line, out_of, part, say
 from studies.kit.store import FolderError, Store, check, engines_of, provenance_of
 from studies.kit.study import Figures, Study, Tables, stages

@@ -14,8 +14,7 @@ from studies.kit.arguments import EffortOptions
 from studies.kit.arguments import figures as some_figures
 from studies.kit.jobs import Job, Question
 from studies.kit.say import capital, listed, out_of, part
-from studies.kit.study import Figures, Study, Tables, stages
-from studies.measures.claims import claim
+from studies.kit.study import Figures, Study, Tables, claim, stages
 from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import engine_of, in_order, look_of, preset_of
 from studies.measures.wrongness import KINDS

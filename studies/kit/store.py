@@ -58,10 +58,7 @@ class FolderError(BadInputError):
 
 
 class Store:
-    """The rows of a study in a folder, which one run at a time may write to.
-
-    A folder without a store is filled from the table, if it is named, that holds rows as they are.
-    """
+    """The rows of a study in a folder, which one run at a time may write to."""
 
     def __init__(self, folder: Path, study: str, table: str = "") -> None:
         self.folder, self.study, self.table = folder, study, table
@@ -164,11 +161,7 @@ class Store:
             raise FolderError(self.folder, f"its {ROWS} cannot be written ({error})") from error
 
     def take(self, other: Path, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> None:
-        """Copy from another folder the rows of some jobs that would be made so here.
-
-        A failure is taken only where its engine is not installed; else it is tried again. A folder
-        without such rows is refused.
-        """
+        """Copy from another folder the rows of some jobs that would be made so here."""
         rows = _rows_of(other)
         found, stale = _sorted(rows, jobs, makers)
         if not found:

@@ -6,6 +6,7 @@ import inspect
 from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
@@ -13,9 +14,8 @@ import pandas as pd
 from cyclopts import Parameter
 
 from studies.kit.arguments import Out, Running, sources_option
-from studies.kit.cluster import place_of
 from studies.kit.jobs import Job, Row, answer
-from studies.kit.run import exit_code, makers_of, run
+from studies.kit.run import exit_code, makers_of, place_of, run
 from studies.kit.say import as_text
 from studies.kit.store import Store, provenance_of
 from studies.kit.tables import read_table, split, tables_of, write_text
@@ -44,11 +44,7 @@ def stages(*functions: Callable[..., Any]) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
-    """A study: its finding and its figures are made of its tables alone.
-
-    A measure runs in a process that may end without an answer; `studies.kit.jobs.ask` then returns
-    a failure.
-    """
+    """A study: its finding and its figures are made of its tables alone."""
 
     name: str  # of its command, and of the folder of a report that holds its results
     question: str
@@ -152,3 +148,27 @@ class Study:
         """Return what is seen in a figure, by the longest beginning of its name that has words."""
         known = [start for start in self.captions if figure.startswith(start)]
         return self.captions[max(known, key=len)] if known else figure
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A statement, whether it holds, and the numbers that decide it."""
+
+    statement: str
+    holds: bool | None
+    numbers: str
+
+
+Check: TypeAlias = "Callable[[pd.DataFrame], tuple[bool, str]]"
+"""Says of a table whether a statement holds, and the numbers."""
+
+
+def claim(statement: str, *needs: str) -> Callable[[Check], Callable[[pd.DataFrame], Finding]]:
+    """Return what makes of a check the test of a statement, which needs some sources."""
+
+    def tested(check: Check, table: pd.DataFrame) -> Finding:
+        if not set(table["source"]).issuperset(needs):
+            return Finding(statement, None, f"needs the sources {', '.join(needs)}")
+        return Finding(statement, *check(table))
+
+    return lambda check: partial(tested, check)

@@ -55,7 +55,7 @@ def command(*, root: Path = Path()) -> int:
     root
         The project's folder.
     """
-    from studies.drawing.block import draw_hero
+    from studies.drawing.film import draw_hero
     from studies.kit.pictures import save
 
     published, folder = root / PUBLISHED, root / PUBLISHED / "hero"

@@ -36,27 +36,14 @@ class UnknownSourceError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Who answers a question; it can be sent to another process or machine.
-
-    Attributes
-    ----------
-    kind : {"model", "solver", "peer", "engine"}
-    call : callable
-        ``(block, motion, *, duration, times, **options) -> Response``.
-    engine, preset : str
-        Names; empty where it is no engine. The preset is by default that of the best there is.
-    stepping : bool
-        Whether it has an option `step`, p dt; `accurate` ones have an option `accuracy`.
-    name : str
-        By which it was asked for.
-    """
+    """Who answers a question; it can be sent to another process or machine."""
 
     kind: Kind
-    call: Callable[..., Response]
+    call: Callable[..., Response]  # (block, motion, *, duration, times, **options)
     engine: str = ""
-    preset: str = ""
-    stepping: bool = False
-    name: str = ""
+    preset: str = ""  # by default that of the best there is
+    stepping: bool = False  # whether it has an option `step`, p dt
+    name: str = ""  # by which it was asked for
 
     def check(self, block: System, motion: Motion, **options: Any) -> None:
         """Refuse what it cannot be asked, before it is, by a TypeError or ValueError."""

@@ -81,7 +81,7 @@ def place(tmp_path_factory):
         patch.setattr(runs, "answers", give_up)
         patch.setattr(chapters, "_prepare", refuse)
         patch.setattr("studies.drawing.film.write_film", lambda *_: None)
-        patch.setattr("studies.kit.cluster.CONNECT_S", 0.5)
+        patch.setattr("studies.kit.run.CONNECT_S", 0.5)
         yield folder
     assert Path.cwd() == kept
 

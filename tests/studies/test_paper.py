@@ -9,8 +9,8 @@ import pytest
 from analytic import MODELS, peak_ratios
 from studies import histories, linearizations, sweep
 from studies.kit.run import run
+from studies.kit.study import claim
 from studies.linearizations import NAMED, VARIANTS, errors_on, grid
-from studies.measures.claims import claim
 from studies.measures.differences import posed_cases
 
 
