@@ -90,13 +90,9 @@ class Study:
         folded = f"Options of every study (`rocking help run`): {' '.join(shared)}."
         command.__doc__ = f"{self.question}\n\n{self.help}\n\n{folded}"
         command.__annotations__ = {name: hint for name, (hint, _) in taken.items()}
+        of = partial(inspect.Parameter, kind=inspect.Parameter.KEYWORD_ONLY)
         command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
-            [
-                inspect.Parameter(
-                    name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint
-                )
-                for name, (hint, default) in taken.items()
-            ]
+            [of(name, default=it, annotation=hint) for name, (hint, it) in taken.items()]
         )
         return command
 
