@@ -18,19 +18,8 @@ from cyclopts import Parameter
 from analytic import conditioning
 from analytic.frame import Rocker, RockingFrame
 from analytic.response import Outcome
-from engines import ENGINES, core_engines
+from engines import ENGINES, core_engines, factors
 from engines.declaration import AT_REST, PASTED, Stepping
-from engines.factors import (
-    AS_BEST,
-    BEST,
-    BOTH,
-    BY_DEFAULT,
-    DEFAULT,
-    LEFT_OUT,
-    OWN_STEP,
-    OWN_STEPS,
-    Factor,
-)
 from engines.scene import Scene, free_rocking_window
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.paper import Case, chosen_cases
@@ -48,9 +37,9 @@ KEY = ["engine", "preset", "factor", "level"]
 """Columns that tell one variant from another."""
 FOUND = ["failed", "wrong", "max_error"]
 """What shows a variant's quality: outcomes of all cases, peaks of typical ones."""
-STILL = f"{OWN_STEP}, on a base at rest"
+STILL = f"{factors.OWN_STEP}, on a base at rest"
 """The defaults at their own step once more, in the other frame."""
-AT_ONCE = f"{OWN_STEP}, shaken at once"
+AT_ONCE = f"{factors.OWN_STEP}, shaken at once"
 """The same without the rest before the motion."""
 SCENES = "block: cases of the paper. frame: random frames, a beam on 2 to 5 columns."
 
@@ -85,7 +74,8 @@ def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
         job_of(variant, kind, case, quick, own_step)
         for own_step in (False, True)
         for variant in tried
-        if not own_step or (variant.preset == DEFAULT and variant.factor != OWN_STEPS)
+        if not own_step
+        or (variant.preset == factors.DEFAULT and variant.factor != factors.OWN_STEPS)
         for kind, case in cases
         if not framed or is_built_for(variant, case)
     ]
@@ -120,22 +110,22 @@ def variants(engine: str) -> Iterator[Variant]:
         use.name: Variant(engine=engine, preset=use.name, level=use.title)
         for use in declared.presets
     }
-    for name in [name for name in plain if name not in (*BOTH, AT_REST, PASTED)]:
+    for name in [name for name in plain if name not in (*factors.BOTH, AT_REST, PASTED)]:
         yield plain[name]
         for help_, settings in declared.preset(name).helped_by.items():
             if settings is not None:
                 level = help_.name.lower()
-                yield replace(plain[name], factor=LEFT_OUT, level=level, settings=settings)
-    for name in [name for name in BOTH if name in plain]:
+                yield replace(plain[name], factor=factors.LEFT_OUT, level=level, settings=settings)
+    for name in [name for name in factors.BOTH if name in plain]:
         yield plain[name]
-        if name == DEFAULT:
-            own = replace(plain[name], factor=OWN_STEPS, level=OWN_STEP)
+        if name == factors.DEFAULT:
+            own = replace(plain[name], factor=factors.OWN_STEPS, level=factors.OWN_STEP)
             yield own
             yield replace(own, level=AT_ONCE, scene={"rest_s": 0.0})
             if declared.preset(name).frame == "world":
                 yield replace(own, level=STILL, scene={"frame": "base"})
         for factor in declared.factors:
-            if set(BOTH) <= plain.keys():
+            if set(factors.BOTH) <= plain.keys():
                 yield from _exchanged(plain[name], factor)
             for item in factor.levels:
                 if name in item.presets:
@@ -143,14 +133,17 @@ def variants(engine: str) -> Iterator[Variant]:
                     yield replace(plain[name], factor=factor.name, level=item.name, **varied)
 
 
-def _exchanged(plain: Variant, factor: Factor) -> Iterator[Variant]:
+def _exchanged(plain: Variant, factor: factors.Factor) -> Iterator[Variant]:
     """Yield one of the two presets with the other's values of a factor, where these differ."""
-    untuned = plain.preset == DEFAULT
-    chosen = [ENGINES[plain.engine].preset(name).settings for name in (DEFAULT, BEST)]
+    untuned = plain.preset == factors.DEFAULT
+    chosen = [
+        ENGINES[plain.engine].preset(name).settings for name in (factors.DEFAULT, factors.BEST)
+    ]
     default, best = ({name: getattr(of, name) for name in factor.settings} for of in chosen)
     own, wanted = (default, best) if untuned else (best, default)
     if wanted != own and (untuned or factor.by_default):
-        level, trap = AS_BEST if untuned else BY_DEFAULT, factor.traps.get(plain.preset, "")
+        trap = factor.traps.get(plain.preset, "")
+        level = factors.AS_BEST if untuned else factors.BY_DEFAULT
         yield replace(plain, factor=factor.name, level=level, settings=wanted, trap=trap)
 
 
@@ -177,7 +170,7 @@ def job_of(
     """Return the job of a variant and a case, at the library's own step or at that of all."""
     options = {"settings": dict(variant.settings), **variant.scene}
     stepping = ENGINES[variant.engine].preset(variant.preset).stepping
-    if stepping is Stepping.FIXED and variant.factor != OWN_STEPS and not own_step:
+    if stepping is Stepping.FIXED and variant.factor != factors.OWN_STEPS and not own_step:
         options["step"] = 2e-3 if quick else 1e-3
     labels = {name: getattr(variant, name) for name in (*KEY, "trap")}
     labels |= {"own_step": own_step, "set": kind, **asdict(case)}
@@ -260,9 +253,9 @@ def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
 
 def left_at_default(lines: pd.DataFrame) -> pd.DataFrame:
     """Return each tuned setting alone at its default, first for each engine what costs most."""
-    best = lines[lines["preset"] == BEST]
+    best = lines[lines["preset"] == factors.BEST]
     tuned = best[best["factor"] == ""].set_index("engine")["max_error"]
-    left = best[best["level"] == BY_DEFAULT]
+    left = best[best["level"] == factors.BY_DEFAULT]
     place, as_tuned = left.groupby("engine", sort=False).ngroup(), left["engine"].map(tuned)
     order, rising = ["place", "worse", "failed", "max_error"], [True, False, False, False]
     left = left.assign(place=place, as_tuned=as_tuned).sort_values(order, ascending=rising)
@@ -289,7 +282,7 @@ def shown(tables: Tables) -> Tables:
     """Return what each tuned setting costs at its default, the presets, and the traps."""
     lines = tables["variants"]
     plain = lines["factor"] == ""
-    own = lines[lines["factor"] == OWN_STEPS]
+    own = lines[lines["factor"] == factors.OWN_STEPS]
     measured = ["median_error", "ratio_over_eta", "newton_e"]
     measured += ["slip_widths", "sink_widths", "step_s"]
     traps = lines[(lines["trap"] != "") & ~plain]

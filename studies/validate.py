@@ -20,15 +20,7 @@ from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
-from studies.measures.halving import (
-    BOUNDED,
-    CALIBRATE,
-    MOST_TRUSTED,
-    TEST,
-    estimate_of,
-    factors,
-    halved,
-)
+from studies.measures.halving import BOUNDED, MOST_TRUSTED, USES, estimate_of, factors, halved
 from studies.measures.presets import titled
 from studies.measures.wrongness import counted, wrong_in
 from studies.sources.registry import core_sources
@@ -81,12 +73,12 @@ def _job(labels: Row, case: RandomCase, source: str, settings: Row) -> Job:
 
 def _with_halves(own: Mapping[str, Row], cases: int, tests: int, options: Options) -> list[Job]:
     found = []
-    for use, seed, count in ((TEST, options.seed, tests), (CALIBRATE, options.seed + 1, cases)):
-        drawn = draw(seed, options.scene)
+    for number, (use, count) in enumerate(zip(USES, (tests, cases), strict=True)):
+        drawn = draw(options.seed + number, options.scene)
         rocked = (it for it in drawn if simulate(it.block, it.motion).outcome is Outcome.ROCKED)
-        for number, case in enumerate(islice(rocked, count)):
+        for place, case in enumerate(islice(rocked, count)):
             for source, settings in own.items():
-                job = _job({"set": use}, replace(case, case=number), source, settings)
+                job = _job({"set": use}, replace(case, case=place), source, settings)
                 if (finer := halved(job)) is None:
                     words = "with --halves it must be an engine with steps that can be halved"
                     raise BadInputError(f"--sources is {source!r}; {words}")

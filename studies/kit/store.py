@@ -29,15 +29,7 @@ from studies.cases.refusal import BadInputError
 from studies.kit.identity import COMPUTING, NOT_INSTALLED, ROOT, Maker, changed, version_of, why
 from studies.kit.jobs import Job, Row
 from studies.kit.say import say
-from studies.kit.tables import (
-    PACKED,
-    digest,
-    table_in,
-    tables_of,
-    with_head,
-    write_table,
-    write_text,
-)
+from studies.kit.tables import PACKED, digest, table_in, tables_of, write_table, write_text
 
 ROWS, PROVENANCE = "rows.sqlite", "provenance.json"
 LOST = ("no result within the time limit", "the process ", "every worker ")
@@ -196,7 +188,7 @@ class Store:
     ) -> None:
         """Write tables by their names, and what made them: versions, sources, what was asked."""
         for name, table in tables.items():
-            write_table(self.folder / f"{name}.csv", with_head(table, self.study, name))
+            write_table(self.folder / f"{name}.csv", _with_head(table, self.study, name))
         before = provenance_of(self.folder)
         run = {
             "start": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -212,6 +204,16 @@ class Store:
             record["machine"] = before.get("machine", record["machine"])
         runs = [*before.get("runs", ()), run]
         write_record(self.folder, {**record, "made": makers, "runs": runs})
+
+
+def _with_head(table: pd.DataFrame, study: str, name: str) -> pd.DataFrame:
+    """Return a table of a study; one that has no columns with those of the published one."""
+    if len(table.columns):
+        return table
+    columns = Path(__file__).parents[1] / "published" / "columns.csv"
+    known = pd.read_csv(columns, keep_default_na=False)
+    mine = known["table"].isin([f"{study}/{name}.csv{end}" for end in ("", PACKED)])
+    return pd.DataFrame(columns=known.loc[mine, "column"].drop_duplicates())
 
 
 def _read(base: sqlite3.Connection) -> Rows:

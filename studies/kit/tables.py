@@ -52,16 +52,6 @@ def split(rows: Iterable[Mapping[str, Any]], label: str) -> dict[str, pd.DataFra
     return {name: pd.DataFrame(of) for name, of in found.items()}
 
 
-def with_head(table: pd.DataFrame, study: str, name: str) -> pd.DataFrame:
-    """Return a table of a study; one that has no columns with those of the published one."""
-    if len(table.columns):
-        return table
-    columns = Path(__file__).parents[1] / "published" / "columns.csv"
-    known = pd.read_csv(columns, keep_default_na=False)
-    mine = known["table"].isin([f"{study}/{name}.csv{end}" for end in ("", PACKED)])
-    return pd.DataFrame(columns=known.loc[mine, "column"].drop_duplicates())
-
-
 def read_table(path: Path, *words: str) -> pd.DataFrame:
     """Read a table back as it was written; named are its columns of words, besides message."""
     texts = dict.fromkeys(("message", *words), str)

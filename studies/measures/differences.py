@@ -9,15 +9,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analytic import (
-    RockingFrame,
-    condition_numbers,
-    conditioning,
-    peak_ratios,
-    sensitivities,
-    sensitivity,
-)
-from analytic.frame import Rocker
+from analytic import condition_numbers, conditioning, peak_ratios, sensitivities, sensitivity
+from analytic.frame import Rocker, RockingFrame
 from analytic.motion import FloatArray, Motion
 from analytic.response import Outcome, Response
 from studies.cases.paper import PULSES

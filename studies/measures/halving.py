@@ -25,8 +25,8 @@ BOUNDED = 0.95
 """Part of the random cases whose error a factor bounds."""
 MOST_TRUSTED = 30.0
 """A larger factor is no bound: the estimate does not see the error."""
-CALIBRATE, TEST = "calibrate", "test"
-"""What a random case is for: to find the factors, or to try them."""
+TEST, CALIBRATE = USES = "test", "calibrate"
+"""What a random case is for: to try the factors, or to find them."""
 
 NO_BOUND = "no bound"
 ELSEWHERE = "the factor was found at the preset's own step"
