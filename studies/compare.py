@@ -239,7 +239,7 @@ def compare(
     for name, row in rows.items():
         row |= {**_beside(row["response"], exact, case.system.p), **known, "exact": exact}
         if estimate:
-            own_steps = effort.own and yours.dt is None
+            own_steps = effort == EffortOptions() and yours.dt is None
             row |= _estimated(row, halves.get(name), case.system, own_steps)
     if yours.friction is not None and yours.friction < exact.friction_needed:
         slides = f"slides: needs {exact.friction_needed:.3g}, has {yours.friction:.3g}"

@@ -20,7 +20,6 @@ from engines import ENGINES
 from engines.scene import MOST_HALF_CYCLES, System
 from engines.settings import perhaps
 from studies.cases.refusal import BadInputError
-from studies.kit.store import usable_cores
 from studies.sources import registry
 
 T = TypeVar("T")
@@ -242,11 +241,6 @@ class Computing:
         if self.cluster is not None:
             refuse_given({"jobs": self.jobs}, "only without --cluster")
 
-    @property
-    def workers(self) -> int:
-        """Processes side by side."""
-        return self.jobs or usable_cores()
-
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
@@ -278,11 +272,6 @@ class EffortOptions:
 
     p_dt: Step | None = None
     accuracy: Annotated[registry.Accuracy, one_of(registry.Accuracy)] | None = None
-
-    @property
-    def own(self) -> bool:
-        """Whether every source steps as it sees fit."""
-        return self.p_dt is None and self.accuracy is None
 
     def options(self, name: str) -> dict[str, Any]:
         """Return the options that this means for a source."""

@@ -31,7 +31,7 @@ from studies.kit.app import ended
 from studies.kit.identity import Maker, maker_of
 from studies.kit.jobs import Job, Row, ask, summary, unanswered
 from studies.kit.say import say
-from studies.kit.store import Store, labels_of
+from studies.kit.store import Store, labels_of, usable_cores
 from studies.kit.workers import Lost, answers
 from studies.sources.registry import resolve
 
@@ -72,7 +72,8 @@ def local(
     many = not at_once or len(jobs) > FEW
     if sys.stderr.isatty():
         Kernel.tell = say
-    apart = [number for number, job in enumerate(jobs) if job.needs_process]
+    # an engine may crash, or not come to an end
+    apart = [n for n, job in enumerate(jobs) if job.apart or job.asked.kind == "engine"]
     for number in sorted({*range(len(jobs))}.difference(apart)):
         if many:
             _load(jobs[number])
@@ -215,7 +216,12 @@ def on_cluster(address: str, limit_s: float, jobs: Sequence[Job], measure: Measu
 def place_of(running: "Computing", *, at_once: bool = False) -> Place:
     """Return where the options let jobs run; `at_once` as for `studies.kit.run.local`."""
     if running.cluster is None:
-        return partial(local, workers=running.workers, limit_s=running.time_limit, at_once=at_once)
+        return partial(
+            local,
+            workers=running.jobs or usable_cores(),
+            limit_s=running.time_limit,
+            at_once=at_once,
+        )
     return partial(on_cluster, running.cluster, running.time_limit)
 
 
