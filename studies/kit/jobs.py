@@ -70,6 +70,11 @@ class Job:
         text = json.dumps(parts, default=plain, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 
+    @property
+    def needs_process(self) -> bool:
+        """Whether its source may crash, or not come to an end."""
+        return self.apart or self.asked.kind == "engine"
+
 
 def plain(value: Any) -> Any:
     """Return a part of an identity as JSON knows it; TypeError if it cannot be told apart."""

@@ -72,8 +72,7 @@ def local(
     many = not at_once or len(jobs) > FEW
     if sys.stderr.isatty():
         Kernel.tell = say
-    # an engine may crash, or not come to an end
-    apart = [n for n, job in enumerate(jobs) if job.apart or job.asked.kind == "engine"]
+    apart = [number for number, job in enumerate(jobs) if job.needs_process]
     for number in sorted({*range(len(jobs))}.difference(apart)):
         if many:
             _load(jobs[number])
