@@ -92,10 +92,11 @@ class Box2DWorld(Adapter):
                 meets = box2d.b2Filter(categoryBits=32, maskBits=16)
                 made.CreateFixture(shape=shape, friction=self._friction, filter=meets)
         made.massData = box2d.b2MassData(
-            mass=body.mass, center=(0.0, 0.0), I=body.inertia[1] * unit**2
+            mass=body.mass, center=(body.offset * unit, 0.0), I=body.about_middle * unit**2
         )
         if not at.at_rest:
-            made.linearVelocity = (at.velocity_x * unit, at.velocity_z * unit)
+            mass_at = body.mass_at
+            made.linearVelocity = (mass_at.velocity_x * unit, mass_at.velocity_z * unit)
             made.angularVelocity = -at.rate
         made.sleepingAllowed = s.sleeping  # the world's own doSleep is read back, and does nothing
         return made
@@ -172,7 +173,7 @@ class Box2DWorld(Adapter):
         }
         for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
             pairs[f"mass {number}"] = wanted.mass, found.mass
-            pairs[f"inertia {number}"] = wanted.inertia[1] * self._unit**2, found.inertia
+            pairs[f"inertia {number}"] = wanted.about_middle * self._unit**2, found.inertia
         return disagreement(pairs, Precision.SINGLE.value)
 
     def _script(self, notes: Notes, way: str) -> Script:
@@ -277,7 +278,6 @@ RECOMMENDED = citations("""
 iterations | 8 for velocity and 3 for position | manual, Hello Box2D
 step | 1/60 s; no smaller one for fewer iterations | manual, Dynamics Module
 """)
-"""What it recommends for accurate contact."""
 
 FACTORS = (
     factor("geometry"),
@@ -302,6 +302,7 @@ ENGINE = Engine(
     library="Box2D",
     build=Box2DWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         replace(NAIVE.at_rest(), rest_s=0.0),  # it would count as time to fall asleep

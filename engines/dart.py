@@ -157,6 +157,8 @@ class DartWorld(Adapter):
         else:
             joint, block = skeleton.createFreeJointAndBodyNodePair()
         block.setMass(body.mass)
+        if body.offset:
+            block.setLocalCOM((body.offset * unit, 0.0, 0.0))
         if s.exact_inertia:
             block.setMomentOfInertia(*(unit * unit * moment for moment in body.inertia))
         if s.geometry == "box" or carried:
@@ -392,6 +394,7 @@ ENGINE = Engine(
     library="dartpy",
     build=DartWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),

@@ -213,6 +213,7 @@ class Engine:
     core : whether the published studies ask it by default
     frames : those of `FRAMES` that it has
     stacks : whether it can hold several bodies, and bodies that rest on others
+    offsets : whether its block can have a mass that is not spread evenly
     precision : of its numbers
     shortest_step : p dt below which a step has no effect that is resolved
     rest_factor : up to how many ordinary steps long one of a block at rest may be; 1 where how the
@@ -233,6 +234,7 @@ class Engine:
     core: bool = False
     frames: tuple[str, ...] = FRAMES
     stacks: bool = False
+    offsets: bool = False
     precision: Precision = Precision.DOUBLE
     shortest_step: float = 1e-12
     rest_factor: float = REST_FACTOR
@@ -296,22 +298,26 @@ class Engine:
 
     def _lacks(self, scene: Scene, preset: Preset) -> str:
         """Say what of a scene it cannot do with a preset, or return an empty string."""
-        layout = scene.layout
-        stacked = len(layout.bodies) > 1
-        if stacked and not self.stacks:
-            return f"{self.title} is not built here for {STACKED}"
-        if preset.stepping is Stepping.LANDING and not layout.rocking:
-            return f"nothing rocks here on whose impacts {self.name}:{preset.name} could land"
-        if scene.rest_s and preset.stepping is not Stepping.FIXED:
-            return "only equal steps can begin before the motion"
-        if stacked and preset.stacked is None:
-            return f"{self.name}:{preset.name} is not built here for {STACKED}"
-        if (frame := scene.frame or preset.frame) not in self.frames:
-            return f"{self.title} has no frame {frame!r}"
-        return ""
+        layout, lands = scene.layout, preset.stepping is Stepping.LANDING
+        stacked, built = len(layout.bodies) > 1, "is not built here for"
+        uneven, frame = not layout.bodies[0].is_homogeneous, scene.frame or preset.frame
+        own = f"{self.name}:{preset.name}"
+        lacking = {
+            f"{self.title} {built} {STACKED}": stacked and not self.stacks,
+            f"{self.title} {built} {UNEVEN}": uneven and not self.offsets,
+            f"nothing rocks here on whose impacts {own} could land": lands and not layout.rocking,
+            "only equal steps can begin before the motion": (
+                scene.rest_s and preset.stepping is not Stepping.FIXED
+            ),
+            f"{own} {built} {UNEVEN}": uneven and lands,
+            f"{own} {built} {STACKED}": stacked and preset.stacked is None,
+            f"{self.title} has no frame {frame!r}": frame not in self.frames,
+        }
+        return next((words for words, lacks in lacking.items() if lacks), "")
 
 
 STACKED = "bodies that rest on other bodies"
+UNEVEN = "a block whose mass is not spread evenly"
 
 
 @dataclass(frozen=True, slots=True)

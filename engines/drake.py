@@ -26,13 +26,8 @@ from engines.shapes import floor_half_size, half_size, touching_spheres
 from engines.world import FloatArray, Moment, Script, Step
 
 MODULES = (
-    "geometry",
-    "math",
-    "multibody.math",
-    "multibody.plant",
-    "multibody.tree",
-    "systems.analysis",
-    "systems.framework",
+    *("geometry", "math", "multibody.math", "multibody.plant", "multibody.tree"),
+    *("systems.analysis", "systems.framework"),
 )
 """Parts of the library that are needed; all of it takes several times as long to import."""
 
@@ -198,6 +193,9 @@ class DrakeWorld(Adapter):
         s, drake, plant, body = self._s, self._library, self.plant, scene.bodies[number]
         name, size = f"block{number or ''}", [2.0 * half for half in half_size(body)]
         inertia = drake.SpatialInertia.SolidBoxWithMass(body.mass, *size)
+        if not body.is_homogeneous:
+            turning, place = drake.RotationalInertia(*body.inertia), [body.offset, 0.0, 0.0]
+            inertia = drake.SpatialInertia.MakeFromCentralInertia(body.mass, place, turning)
         block = plant.AddRigidBody(name, self.blocks, inertia)
         if s.planar:
             ends = (("on the base", self.ground), ("in the plane", block))
@@ -339,7 +337,7 @@ class DrakeWorld(Adapter):
         turning = inertia.CalcRotationalInertia().get_moments()
         pairs: dict[str, tuple[Any, Any]] = {
             "mass": (body.mass, block.get_mass(self.context)),
-            "moment": (body.inertia[1], turning[1]),
+            "moment": (body.about_middle, turning[1]),
             "friction": (s.friction, friction),
             "step": (0.0 if self._continuous else self._ordinary, plant.time_step()),
         }
@@ -366,19 +364,10 @@ class DrakeWorld(Adapter):
                 f"rate = state[6 * number + {7 * count + 1}]",
             )
         along = (IN_PLANE if planar else IN_SPACE)[0]
-        words = (
-            "Config(",
-            "Friction(",
-            "Material(",
-            "AddProperty",
-            "Gains(",
-            "Integrator",
-            "set_",
-            "Sphere(",
-        )
+        words = "Config( Friction( Material( AddProperty Gains( Integrator set_ Sphere("
         return Script(
             imports=("import pydrake.all as drake",),
-            settings=notes.quoted(*words),
+            settings=notes.quoted(*words.split()),
             # a discrete plant changes at the beginning of a step: half of one later it has, once
             build=(*notes.lines(), f"end = {'0.0' if continuous else '-0.5 * DT'}"),
             step=(
@@ -415,7 +404,6 @@ gains | {{1e4, 1}} on a rail that carries 0.1 kg; of 'infinite' ones there is no
     times those are used, and a floor of the block's mass |
     examples/multibody/deformable/deformable_torus.cc
 """)
-"""What the preset "default" is documented by."""
 
 RECOMMENDED = citations("""
 solver | similar, where impacts are to be resolved | DiscreteContactApproximation
@@ -476,6 +464,7 @@ ENGINE = Engine(
     packages=("drake",),
     build=DrakeWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),

@@ -136,9 +136,11 @@ class PhysxWorld(Adapter):
                 made.attach(ball)
             if scene.layout.rests(number):
                 made.attach(physx.PhysxCollisionShapeBox(half, self.material))
+        if s.geometry != "box" or not body.is_homogeneous:
             made.mass = body.mass
             made.inertia = tuple(moment * unit**2 for moment in body.inertia)
-            made.cmass_local_pose = self._library.Pose()
+            place = ((body.offset * unit, 0.0, 0.0),) if body.offset else ()
+            made.cmass_local_pose = self._library.Pose(*place)
         if s.angular_damping is not None:
             made.angular_damping = s.angular_damping
         if s.depenetration is not None:
@@ -148,7 +150,8 @@ class PhysxWorld(Adapter):
         turn = (math.cos(0.5 * at.theta), 0.0, math.sin(0.5 * at.theta), 0.0)
         self._place_at(made, (at.x * unit, 0.0, at.z * unit - self._sunk), turn)
         if not at.at_rest:
-            made.linear_velocity = (at.velocity_x * unit, 0.0, at.velocity_z * unit)
+            mass_at = body.mass_at
+            made.linear_velocity = (mass_at.velocity_x * unit, 0.0, mass_at.velocity_z * unit)
             made.angular_velocity = (0.0, at.rate, 0.0)
         return made
 
@@ -260,18 +263,10 @@ class PhysxWorld(Adapter):
         }
         under = {"": "", "belt": f" - {x}"}.get(way, " - float(floor.entity_pose.p[0])")
         pull = ", 0.0, ".join(scaled(axis, unit) for axis in ("pull_x", f"(pull_z + {weight!r})"))
-        words = (
-            "_config(",
-            "Material(",
-            "damping",
-            "depenetration",
-            "locked_motion",
-            "Sphere",
-            "block.inertia",
-        )
+        words = "_config( Material( damping depenetration locked_motion Sphere block.inertia"
         return Script(
             imports=("import sapien",),
-            settings=notes.quoted(*words),
+            settings=notes.quoted(*words.split()),
             build=(*notes.lines(), "system.timestep = DT"),
             step=(
                 f"pull = {pull}",
@@ -337,7 +332,6 @@ iterations | at most 64 of position and 4 of velocity: all of them here | {TUNIN
 solver | TGS, the first candidate | {TUNING}
 bounce_threshold | 0.2 m/s | {TUNING}
 """)
-"""What those who maintain PhysX recommend for contact."""
 
 PASTED = citations("""
 solver | PGS | measured here
@@ -379,6 +373,7 @@ ENGINE = Engine(
     library="sapien",
     build=PhysxWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),

@@ -90,9 +90,12 @@ class PymunkWorld(Adapter):
     def _new_body(self, body: Body) -> Any:
         unit, at = self._unit, body.at
         made = self._library.Body(body.mass, body.inertia[1] * unit**2)
-        made.position, made.angle = (at.x * unit, at.z * unit), -at.theta
+        made.angle, mass_at = -at.theta, body.mass_at
+        if body.offset:
+            made.center_of_gravity = (body.offset * unit, 0.0)
+        made.position = (at.x * unit, at.z * unit)
         if not at.at_rest:
-            made.velocity = (at.velocity_x * unit, at.velocity_z * unit)
+            made.velocity = (mass_at.velocity_x * unit, mass_at.velocity_z * unit)
             made.angular_velocity = -at.rate
         return made
 
@@ -265,7 +268,6 @@ step | 0.002 s, a tenth of 0.02 | Space.step: multiple calls with a smaller dt
 collision_slop | as high as you can without noticeable overlapping: here 1 mm |
     Space.collision_slop
 """)
-"""What it recommends for stable and accurate contact."""
 
 FACTORS = (
     factor("geometry"),
@@ -287,6 +289,7 @@ ENGINE = Engine(
     library="pymunk",
     build=PymunkWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),

@@ -151,22 +151,24 @@ class RapierWorld(Adapter):
             if scene.layout.rests(number):
                 shapes.append(collider.cuboid(*half).density(0.0))
         else:
-            shapes = [collider.cuboid(*half).density(body.density / unit**3)]
+            dense = body.density / unit**3 if body.is_homogeneous else 0.0
+            shapes = [collider.cuboid(*half).density(dense)]
         friction = float(s.friction)  # the mean of two counts
         shapes = [shape.friction(friction).restitution(s.restitution) for shape in shapes]
         made = self._library.RigidBody.dynamic()
         made = made.translation((at.x * unit, 0.0, at.z * unit - self._sunk))
         if not at.at_rest:
-            velocity = (at.velocity_x * unit, 0.0, at.velocity_z * unit)
+            mass_at = body.mass_at
+            velocity = (mass_at.velocity_x * unit, 0.0, mass_at.velocity_z * unit)
             made = made.rotation((0.0, at.theta, 0.0)).linvel(velocity).angvel((0.0, at.rate, 0.0))
         if s.planar:
             made = made.enabled_rotations((False, True, False))
             made = made.enabled_translations((True, not s.locked_aside, True))
         if s.sleeping is not None:
             made = made.can_sleep(s.sleeping)
-        if corners:
+        if corners or not body.is_homogeneous:
             inertia = tuple(moment * unit**2 for moment in body.inertia)
-            mass = self._library.MassProperties((0.0, 0.0, 0.0), body.mass, inertia)
+            mass = self._library.MassProperties((body.offset * unit, 0.0, 0.0), body.mass, inertia)
             made = made.additional_mass_properties(mass)
         block = self.world.rigid_bodies[self.world.add_body(made, shapes)]
         block.recompute_mass_properties_from_colliders(self.world.colliders)  # else a step late
@@ -321,7 +323,6 @@ step | 1/120 s | rapier.rs, user guide for Python, Integration parameters
 substeps | 8, for a more accurate simulation | the same page
 friction_model | Coulomb, the more accurate one | integration_parameters.rs
 """)
-"""What it recommends for accurate contact."""
 
 PASTED = citations("""
 substeps | 8, for a more accurate simulation | rapier.rs, user guide for Python
@@ -384,6 +385,7 @@ ENGINE = Engine(
     library="rapier3d",
     build=RapierWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         replace(NAIVE.at_rest(), rest_s=0.0),  # it would count as time to fall asleep

@@ -152,6 +152,7 @@ ENGINE = Engine(
     install="rocking",
     build=MujocoWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),

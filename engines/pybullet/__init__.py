@@ -148,6 +148,7 @@ ENGINE = Engine(
     library="pybullet",
     build=BulletWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),

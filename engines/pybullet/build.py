@@ -9,7 +9,7 @@ from typing import Any
 
 from engines.parts import Adapter, imported, iterations_for, silence, yaw_of
 from engines.run.export import Notes
-from engines.scene import Scene
+from engines.scene import Body, Scene
 from engines.settings import Settings, disagreement, given, setting
 from engines.shapes import floor_half_size, half_size, hull_points, touching_spheres
 from engines.world import ContactPhase, FloatArray, Script, Step
@@ -121,7 +121,7 @@ class BulletWorld(Adapter):
         self._own, self._client = taken()
         self._constrained = self._way == "constraint"
         self.lag_m = 0.0 if self._constrained else None
-        self.holder, self._due = -1, 0.0
+        self.holder, self._due, self._offset = -1, 0.0, scene.bodies[0].offset
         self._phase: ContactPhase | None = None
         with held_for_all:
             self._set_engine()
@@ -192,14 +192,18 @@ class BulletWorld(Adapter):
         """Make a body, of a shape of its own."""
         p, s, scene = self._p, self._s, self._scene
         body = scene.bodies[number]
+        left = -body.offset  # the library has a body where its mass is
         if s.geometry == "box" or scene.layout.rests(number):
-            half = half_size(body)
-            shape = self._call("createCollisionShape", shapeType=p.GEOM_BOX, halfExtents=half)
+            box: dict[str, Any] = {"shapeType": p.GEOM_BOX, "halfExtents": half_size(body)}
+            if body.offset:
+                box["collisionFramePosition"] = (left, 0.0, 0.0)
+            shape = self._call("createCollisionShape", **box)
         elif s.geometry == "hull":
-            points = hull_points(body)
+            points = [(x + left, y, z) for x, y, z in hull_points(body)]
             shape = self._call("createCollisionShape", shapeType=p.GEOM_MESH, vertices=points)
         else:
             corners = touching_spheres(scene, number, self._radius, planar=s.planar)
+            corners = [(x + left, y, z) for x, y, z in corners]
             shape = self._call(
                 "createCollisionShapeArray",
                 shapeTypes=[p.GEOM_SPHERE] * len(corners),
@@ -220,7 +224,7 @@ class BulletWorld(Adapter):
                 "lateralFriction": s.friction,
                 # without its mass in the same call, a block in maximal coordinates becomes NaN
                 "mass": body.mass,
-                "localInertiaDiagonal": body.inertia if s.exact_inertia else None,
+                "localInertiaDiagonal": body.inertia if self._exact(body) else None,
                 "linearDamping": s.damping,
                 "angularDamping": s.damping,
                 "restitution": s.restitution,
@@ -233,6 +237,10 @@ class BulletWorld(Adapter):
                 self._change(self.base, base)
             faults.append(self._read_back(number, wanted))
         return next(filter(None, faults), "")
+
+    def _exact(self, body: Body) -> bool:
+        """Say whether a body is given its moments of inertia; a shape's are those of even mass."""
+        return self._s.exact_inertia or not body.is_homogeneous
 
     def _change(self, body: int, wanted: Mapping[str, Any]) -> None:
         anchor = {"frictionAnchor": 1} if self._s.friction_anchor else {}
@@ -251,7 +259,7 @@ class BulletWorld(Adapter):
             "friction of the base": (1.0, base[1]),
             "numSolverIterations": (self._iterations, engine["numSolverIterations"]),
         }
-        if s.exact_inertia:
+        if self._exact(body):
             pairs |= {f"inertia {i}": (body.inertia[i], block[2][i]) for i in range(3)}
         if s.multibody:
             # a body in maximal coordinates takes them, too, but reads zeros
@@ -273,7 +281,7 @@ class BulletWorld(Adapter):
             p.resetBasePositionAndOrientation(number, place, UPRIGHT, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
         for number, body in zip(self.bodies, bodies, strict=True):
-            at, half = body.at, 0.5 * body.at.theta
+            at, half = body.mass_at, 0.5 * body.at.theta
             turned, place = (0.0, math.sin(half), 0.0, math.cos(half)), (at.x, 0.0, at.z)
             velocity, rate = (at.velocity_x, 0.0, at.velocity_z), (0.0, at.rate, 0.0)
             p.resetBasePositionAndOrientation(number, place, turned, physicsClientId=client)
@@ -333,7 +341,10 @@ class BulletWorld(Adapter):
         for row, body in enumerate(self.bodies):
             (x, _, z), q = p.getBasePositionAndOrientation(body, client)
             rate = p.getBaseVelocity(body, client)[1][1]
-            self._state[row] = x - moved, z - raised, 2.0 * math.atan2(q[1], q[3]), rate
+            theta = 2.0 * math.atan2(q[1], q[3])
+            if self._offset:
+                x, z = x - self._offset * math.cos(theta), z + self._offset * math.sin(theta)
+            self._state[row] = x - moved, z - raised, theta, rate
         return self._state
 
     def fault(self) -> str:

@@ -4,6 +4,7 @@ import math
 
 from analytic.response import History, Impact, Outcome, Problem, Reason, Response
 from engines.run import watch as seen
+from engines.run.rows import THETA
 from engines.run.watch import Watch, complete
 from engines.world import FloatArray
 
@@ -34,11 +35,14 @@ def problem_of(problem: int, far: float, width: float) -> Problem | None:
 def response_of(watch: Watch, events: FloatArray, history: History | None) -> Response:
     """Return what was seen of a body; there is room for one more of its events (k, 4)."""
     complete(watch, events)
+    sides = float(watch.peak / watch.alpha), float(watch.peak_left / watch.alpha_left)
     if watch.overturned:
         outcome, ratio = Outcome.OVERTURNED, math.inf
+        right, left = sides
+        sides = (math.inf, left) if watch.two[1, THETA] > 0.0 else (right, math.inf)
     else:
         outcome = Outcome.ROCKED if watch.rocked else Outcome.AT_REST
-        ratio = float(watch.peak / watch.alpha)
+        ratio = max(sides)
     noted = events[: watch.events]
     uplifts, impacts, rests = (
         noted[noted[:, seen.KIND] == kind] for kind in (seen.UPLIFT, seen.IMPACT, seen.REST)
@@ -46,6 +50,7 @@ def response_of(watch: Watch, events: FloatArray, history: History | None) -> Re
     return Response(
         outcome=outcome,
         peak_ratio=ratio,
+        peak_sides=sides,
         crossed=bool(watch.crossed or watch.overturned),
         impacts=tuple(Impact(*impact) for impact in impacts[:, seen.WHEN :].tolist()),
         uplifts=tuple(uplifts[:, seen.WHEN].tolist()),

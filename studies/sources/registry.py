@@ -49,8 +49,10 @@ class Source:
         """Refuse what it cannot be asked, before it is, by a TypeError or ValueError."""
         if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
-        if isinstance(block, RigidBlock) and not block.is_even and self.kind != "model":
-            raise ValueError(f"{self.name} takes no block with an offset; only models do")
+        if isinstance(block, RigidBlock) and not (
+            block.is_even or self.engine or self.kind == "model"
+        ):
+            raise ValueError(f"{self.name} takes no block with an offset; models and engines do")
         if getattr(self.call, "func", None) is run_engine:
             self.declared.use(scene_of(block, motion, self.preset, **options))
             return
