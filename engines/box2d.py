@@ -9,16 +9,14 @@ radius, and half is the height by which its floor is raised.
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
-from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import ASLEEP, factor, level, moving_base
-from engines.parts import NO_JAM, fall, imported, iterations_for, returned
+from engines.parts import NO_JAM, Adapter, fall, iterations_for, returned
 from engines.run.export import Notes, scaled
 from engines.scene import BASE, Scene
-from engines.settings import check, disagreement, setting
+from engines.settings import disagreement, setting
 from engines.shapes import Counted, floor_reach
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
+from engines.world import ContactPhase, FloatArray, Script, Step
 
 DEEPER = 3.0
 """By how many of a pivot's reaches a free corner above is out of reach before an impact."""
@@ -51,42 +49,33 @@ class Box2DSettings(Counted):
     floor: str = setting("velocity", names=("velocity", "both", "position"))
     restitution: float = setting(0.0, least=0.0, most=1.0)  # of a pair the larger one counts
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class Box2DWorld:
+class Box2DWorld(Adapter):
     """Bodies on one kinematic body, or on one for each corner of a block."""
 
-    moment = Moment.MIDDLE
+    library = "Box2D"
+    called = "Box2D"
 
-    def __init__(
-        self, scene: Scene, settings: Box2DSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._box2d: Any = imported("Box2D") if library is None else library
-        s = self.settings = settings
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        s = self._s
         self._friction = float(s.friction)  # of a pair the root of the product counts
         self._unit, self._sunk = s.unit_of(scene), s.sunk_of(scene)
         self._reach = 0.5 * (s.margin or 0.0) * fall(scene, dt_s) * self._unit
         self._free = -self._reach  # height of the floor below a corner that is aloft
         iterations = iterations_for(scene, s.iterations, s.sweeps) or MANUAL_ITERATIONS
         self.iterations = iterations, s.position_iterations
-        self._way = s.floor if scene.frame == "world" else ""
-        self._dt = self._speed = self._place = self.lag_m = 0.0
         # a polygon acts from its skin on, and so does another one on it
         skins = s.skins_below * (1.0 if s.geometry == "corners" else 2.0)
-        self._lowered: float = skins * self._box2d.b2_polygonRadius
-        self.world = self._box2d.b2World(gravity=(0.0, 0.0))
+        self._lowered: float = skins * self._library.b2_polygonRadius
+        self.world = self._library.b2World(gravity=(0.0, 0.0))
         self.world.continuousPhysics = s.continuous
         self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
         self.floors = self._new_floors(floor_reach(scene) * self._unit)
         first = scene.bodies[0]
         self._half = 0.5 * first.width * self._unit, 0.5 * first.height * self._unit
-        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
-        self._fault = self._read_back(scene)
 
     def _new_body(self, scene: Scene, number: int) -> Any:
-        s, unit, body, box2d = self.settings, self._unit, scene.bodies[number], self._box2d
+        s, unit, body, box2d = self._s, self._unit, scene.bodies[number], self._library
         at, x, z = body.at, 0.5 * body.width * unit, 0.5 * body.height * unit
         place = (at.x * unit, at.z * unit - self._sunk)
         made = self.world.CreateDynamicBody(position=place, angle=-at.theta)
@@ -103,26 +92,27 @@ class Box2DWorld:
                 meets = box2d.b2Filter(categoryBits=32, maskBits=16)
                 made.CreateFixture(shape=shape, friction=self._friction, filter=meets)
         made.massData = box2d.b2MassData(
-            mass=body.mass, center=(0.0, 0.0), I=body.inertia[1] * unit**2
+            mass=body.mass, center=(body.offset * unit, 0.0), I=body.about_middle * unit**2
         )
         if not at.at_rest:
-            made.linearVelocity = (at.velocity_x * unit, at.velocity_z * unit)
+            mass_at = body.mass_at
+            made.linearVelocity = (mass_at.velocity_x * unit, mass_at.velocity_z * unit)
             made.angularVelocity = -at.rate
         made.sleepingAllowed = s.sleeping  # the world's own doSleep is read back, and does nothing
         return made
 
     def _new_corners(self, made: Any, x: float, z: float, on: int) -> None:
         """Make corners that meet a floor of their own side, or any body that rests on them."""
-        box2d = self._box2d
+        box2d = self._library
         for side in (0, 1):
             bits = (1 << side, 4 << side) if on == BASE else (16, 32)
             shape = box2d.b2CircleShape(pos=((-x, x)[side], z), radius=self._reach)
             meets = box2d.b2Filter(categoryBits=bits[0], maskBits=bits[1])
             corner = made.CreateFixture(shape=shape, friction=self._friction, filter=meets)
-            corner.restitution = self.settings.restitution
+            corner.restitution = self._s.restitution
 
     def _new_floors(self, far: float) -> list[Any]:
-        box2d, corners, top = self._box2d, self.settings.geometry == "corners", -self._lowered
+        box2d, corners, top = self._library, self._s.geometry == "corners", -self._lowered
         place, numbers = (0.0, self._reach - self._sunk), range(2 if corners else 1)
         floors = [self.world.CreateKinematicBody(position=place) for _ in numbers]
         for number, floor in enumerate(floors):
@@ -138,7 +128,7 @@ class Box2DWorld:
         """Advance by a step."""
         self.world.gravity = (step.pull_x * self._unit, step.pull_z * self._unit)
         before, self._dt = self._dt, step.dt_s
-        back = returned(step, before) if self.settings.reflection else 0.0
+        back = returned(step, before) if self._s.reflection else 0.0
         led = self._way == "velocity"
         at = (step.base_x - step.dt_s * step.base_velocity) * self._unit if self._way else 0.0
         felt = step.base_velocity * self._unit if self._way == "both" else 0.0
@@ -168,17 +158,13 @@ class Box2DWorld:
             self._state[number] = place, level, -body.angle, -body.angularVelocity
         return self._state
 
-    def fault(self) -> str:
-        """Say which setting was not taken."""
-        return self._fault
-
     def close(self) -> None:
         """Release the engine's memory."""
         for body in (*self.bodies, *self.floors):
             self.world.DestroyBody(body)
 
     def _read_back(self, scene: Scene) -> str:
-        body, s = self.bodies[0], self.settings
+        body, s = self.bodies[0], self._s
         pairs: dict[str, Any] = {
             "friction": (s.friction, body.fixtures[0].friction),
             "restitution": (s.restitution, body.fixtures[0].restitution),
@@ -187,8 +173,44 @@ class Box2DWorld:
         }
         for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
             pairs[f"mass {number}"] = wanted.mass, found.mass
-            pairs[f"inertia {number}"] = wanted.inertia[1] * self._unit**2, found.inertia
+            pairs[f"inertia {number}"] = wanted.about_middle * self._unit**2, found.inertia
         return disagreement(pairs, Precision.SINGLE.value)
+
+    def _script(self, notes: Notes, way: str) -> Script:
+        unit = self._unit
+        notes.name(world=self.world, floor=self.floors)
+        notes.listed(floors=self.floors)
+        x, velocity, moves, led = scaled("base_x", unit), scaled("base_velocity", unit), [], ""
+        if way:
+            shift = f"    floor.position = {x} - DT * {velocity}, floor.position.y"
+            felt = {
+                "velocity": f"({x} - floor.position.x) / DT",
+                "both": velocity,
+                "position": "0.0",
+            }
+            moves = ["for floor in floors:", *([] if way == "velocity" else [shift])]
+            moves += [f"    floor.linearVelocity = {felt[way]}, 0.0"]
+            led = " - base_x"
+            if way == "velocity":
+                led = f" - floors[0].position.x / {unit!r}"
+        step = f"world.Step({{}}, {', '.join(map(str, self.iterations))})"
+        return Script(
+            imports=("import Box2D",),
+            settings=(
+                step.format(repr(self._ordinary)),
+                *notes.quoted(
+                    "continuous", "CreateFixture(", "filterData", "restitution", "sleeping"
+                ),
+            ),
+            build=notes.lines(),
+            step=(
+                f"world.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
+                *moves,
+                step.format("DT"),
+            ),
+            pose=("theta, rate = -bodies[number].angle, -bodies[number].angularVelocity",),
+            place=f"bodies[0].position.x / {unit!r}{led}",
+        )
 
 
 class Box2DStacks(Box2DWorld):
@@ -200,9 +222,9 @@ class Box2DStacks(Box2DWorld):
     columns that part, whose friction and load would hold, too.
     """
 
-    def __init__(self, scene: Scene, settings: Box2DSettings, dt_s: float) -> None:
-        super().__init__(scene, settings, dt_s)
-        box2d, (*columns, beam) = self._box2d, self.bodies
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        super()._build(scene, dt_s)
+        box2d, (*columns, beam) = self._library, self.bodies
         self.world.warmStarting = False
         self._skin, (first,) = box2d.b2_polygonRadius, beam.fixtures
         apart = box2d.b2Filter(categoryBits=128, maskBits=64)
@@ -226,40 +248,6 @@ class Box2DStacks(Box2DWorld):
         super().step(step._replace(side=0.0) if strikes else step)
 
 
-def script(scene: Scene, settings: Box2DSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Box2D; see `engines.run.export`."""
-    notes, unit = Notes(), settings.unit_of(scene)
-    world = Box2DWorld(scene, settings, dt_s, notes.of(imported("Box2D"), "Box2D"))
-    notes.name(world=world.world, floor=world.floors)
-    notes.name_bodies(world.bodies)
-    notes.listed(floors=world.floors)
-    x, velocity, moves, led = scaled("base_x", unit), scaled("base_velocity", unit), [], ""
-    if scene.frame == "world":
-        shift = f"    floor.position = {x} - DT * {velocity}, floor.position.y"
-        felt = {"velocity": f"({x} - floor.position.x) / DT", "both": velocity, "position": "0.0"}
-        moves = ["for floor in floors:", *([] if settings.floor == "velocity" else [shift])]
-        moves += [f"    floor.linearVelocity = {felt[settings.floor]}, 0.0"]
-        led = " - base_x"
-        if settings.floor == "velocity":
-            led = f" - floors[0].position.x / {unit!r}"
-    step = f"world.Step({{}}, {', '.join(map(str, world.iterations))})"
-    return Script(
-        imports=("import Box2D",),
-        settings=(
-            step.format(repr(dt_s)),
-            *notes.quoted("continuous", "CreateFixture(", "filterData", "restitution", "sleeping"),
-        ),
-        build=notes.lines(),
-        step=(
-            f"world.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
-            *moves,
-            step.format("DT"),
-        ),
-        pose=("theta, rate = -bodies[number].angle, -bodies[number].angularVelocity",),
-        place=f"bodies[0].position.x / {unit!r}{led}",
-    )
-
-
 TUNED = Box2DSettings(
     geometry="corners",
     friction=NO_JAM,
@@ -274,33 +262,22 @@ TUNED = Box2DSettings(
     floor="both",
 )
 
-DOCUMENTED = (
-    Citation("step", "world.Step(1.0 / 60, 6, 2)", "Box2D/examples/hello.py"),
-    Citation("sleeping", "on, the default", "b2BodyDef.allowSleep"),
-    Citation(
-        "friction",
-        "0.2, of a pair the root of the product; here 1",
-        "b2FixtureDef.friction, b2Contact.h",
-    ),
-    Citation(
-        "skin", "0.01 of a polygon, of which 0.005 is left alone", "b2_polygonRadius, b2_linearSlop"
-    ),
-    Citation("warm starting", "on, the default", "b2World.warmStarting"),
-    Citation(
-        "without effect",
-        "continuousPhysics on; b2_velocityThreshold 1 below which nothing bounces; no damping; "
-        "speeds up to b2_maxTranslation 2 a step",
-        "b2World, b2BodyDef, b2Settings.h",
-    ),
-    Citation("floor", "a kinematic body, by its linearVelocity", "examples/body_types.py"),
-)
+DOCUMENTED = citations("""
+step | world.Step(1.0 / 60, 6, 2) | Box2D/examples/hello.py
+sleeping | on, the default | b2BodyDef.allowSleep
+friction | 0.2, of a pair the root of the product; here 1 | b2FixtureDef.friction, b2Contact.h
+skin | 0.01 of a polygon, of which 0.005 is left alone | b2_polygonRadius, b2_linearSlop
+warm starting | on, the default | b2World.warmStarting
+without effect | continuousPhysics on; b2_velocityThreshold 1 below which nothing bounces; no
+    damping; speeds up to b2_maxTranslation 2 a step | b2World, b2BodyDef, b2Settings.h
+floor | a kinematic body, by its linearVelocity | examples/body_types.py
+""")
 """What its documentation sets, in pybox2d 2.3.10."""
 
-RECOMMENDED = (
-    Citation("iterations", "8 for velocity and 3 for position", "manual, Hello Box2D"),
-    Citation("step", "1/60 s; no smaller one for fewer iterations", "manual, Dynamics Module"),
-)
-"""What it recommends for accurate contact."""
+RECOMMENDED = citations("""
+iterations | 8 for velocity and 3 for position | manual, Hello Box2D
+step | 1/60 s; no smaller one for fewer iterations | manual, Dynamics Module
+""")
 
 FACTORS = (
     factor("geometry"),
@@ -317,14 +294,7 @@ FACTORS = (
     moving_base("both", "velocity", "position"),
 )
 
-NAIVE = Preset(
-    name="default",
-    settings=Box2DSettings(),
-    step_s=1.0 / 60.0,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.2},
-)
+NAIVE = default(Box2DSettings(), 1.0 / 60.0, DOCUMENTED, friction=0.2)
 
 ENGINE = Engine(
     name="box2d",
@@ -332,6 +302,7 @@ ENGINE = Engine(
     library="Box2D",
     build=Box2DWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         replace(NAIVE.at_rest(), rest_s=0.0),  # it would count as time to fall asleep
@@ -341,21 +312,15 @@ ENGINE = Engine(
             position_iterations=3,
         ),
         Preset(name="tuned", settings=TUNED, step=1e-3, helped_by={Help.MARGIN: {"margin": None}}),
-        Preset(
-            name="landing",
-            settings=replace(TUNED, reflection=True),
-            stepping=Stepping.LANDING,
+        landing(
+            replace(TUNED, reflection=True),
+            {Help.REFLECTION: {"reflection": False}, Help.MARGIN: {"margin": None}},
             stacked={"sweeps": 200.0},
             stacks=Box2DStacks,
-            helped_by={
-                Help.STEPS: None,
-                Help.REFLECTION: {"reflection": False},
-                Help.MARGIN: {"margin": None},
-            },
         ),
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,
-    script=script,
+    script=Box2DWorld.script,
     factors=FACTORS,
 )

@@ -11,16 +11,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
-from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import fall, imported, returned
+from engines.parts import Adapter, fall, returned
 from engines.run.export import Notes, scaled
 from engines.scene import Scene
-from engines.settings import check, disagreement, one_of, setting
+from engines.settings import Settings, disagreement, one_of, setting
 from engines.shapes import Point, counted, floor_half_size, half_size, touching_spheres
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
+from engines.world import ContactPhase, FloatArray, Script, Step
 
 DETECTORS = {
     "DART": "DARTCollisionDetector",
@@ -42,7 +40,7 @@ FREE = {ContactPhase.APPROACH: -1.0, ContactPhase.STRIKE: 1.0}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DartSettings:
+class DartSettings(Settings):
     """Settings of DART, by default its own; None leaves a setting to the library."""
 
     # of corners, small spheres where those at the base are
@@ -81,25 +79,18 @@ class DartSettings:
     restitution: float | None = setting(least=0.0, most=1.0)  # the library multiplies both
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class DartWorld:
+class DartWorld(Adapter):
     """Bodies on a box whose joint is driven by its velocity, whether it moves or not."""
 
-    moment = Moment.MIDDLE
+    library = "dartpy"
+    called = "dart"
 
-    def __init__(
-        self, scene: Scene, settings: DartSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._dart: Any = imported("dartpy") if library is None else library
-        self._s, self._unit = settings, settings.unit
-        self._way = settings.floor if scene.frame == "world" else ""
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        settings, self._unit = self._s, self._s.unit
         self._led = self._way in ("velocity", "servo")
         self._driven = bool(self._way) or settings.reflection
         self._margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
-        self._dt = self._speed = self._place = self.lag_m = 0.0
         self._half = counted(half_size(scene.bodies[0]), self._unit)
         self.coordinates = IN_PLANE if settings.planar else IN_SPACE
         # what rests on others lands with them
@@ -108,7 +99,7 @@ class DartWorld:
         self._corners: list[tuple[Any, Point]] = []
         self._shapes: list[Any] = []
         self.named: dict[str, list[Any]] = {name: [] for name in ("mount", "aside", "options")}
-        self.world = self._dart.simulation.World()
+        self.world = self._library.simulation.World()
         self._set_solver()
         self.mover, self.floor = self._new_base(scene)
         # a body lives as long as its skeleton, which only the world keeps
@@ -118,11 +109,10 @@ class DartWorld:
             for number, shape in enumerate(self._shapes):  # the product counts
                 coefficient = settings.restitution if number else settings.base_restitution
                 shape.getDynamicsAspect().setRestitutionCoeff(coefficient)
-        self._block, self._state = self.bodies[0], np.zeros((len(self.bodies), len(Pose._fields)))
-        self._fault = self._read_back(scene) if library is None else ""
+        self._block = self.bodies[0]
 
     def _set_solver(self) -> None:
-        s, dart, solver = self._s, self._dart, self.world.getConstraintSolver()
+        s, dart, solver = self._s, self._library, self.world.getConstraintSolver()
         if s.collision is not None:
             solver.setCollisionDetector(getattr(dart.collision, DETECTORS[s.collision])())
         if s.sleeping is not None:
@@ -137,16 +127,16 @@ class DartWorld:
 
     def _new_base(self, scene: Scene) -> Any:
         half = counted(floor_half_size(scene), self._unit)
-        base = self._dart.dynamics.Skeleton("base")
+        base = self._library.dynamics.Skeleton("base")
         drive, floor = base.createTranslationalJointAndBodyNodePair()
-        kinds = self._dart.dynamics.ActuatorType
+        kinds = self._library.dynamics.ActuatorType
         drive.setActuatorType(kinds.SERVO if self._s.floor == "servo" else kinds.VELOCITY)
         if self._s.aside:
             self.named["mount"].append(floor)
             aside, floor = base.createPrismaticJointAndBodyNodePair(floor)  # out of the plane
             aside.setAxis((0.0, 1.0, 0.0))
             self.named["aside"].append(aside)
-        box = self._dart.dynamics.BoxShape([2.0 * x for x in half])
+        box = self._library.dynamics.BoxShape([2.0 * x for x in half])
         self._shapes.append(self._attached(floor, box, (0.0, 0.0, -half[2])))
         self.world.addSkeleton(base)
         return drive, floor
@@ -154,7 +144,7 @@ class DartWorld:
     def _new_body(self, scene: Scene, number: int) -> Any:
         s, unit, body = self._s, self._unit, scene.bodies[number]
         at, half = body.at, counted(half_size(body), unit)
-        skeleton = self._dart.dynamics.Skeleton(f"block{number or ''}")
+        skeleton = self._library.dynamics.Skeleton(f"block{number or ''}")
         carried = scene.layout.rests(number)
         if self._together and carried:
             aside, between = skeleton.createPrismaticJointAndBodyNodePair()
@@ -167,14 +157,16 @@ class DartWorld:
         else:
             joint, block = skeleton.createFreeJointAndBodyNodePair()
         block.setMass(body.mass)
+        if body.offset:
+            block.setLocalCOM((body.offset * unit, 0.0, 0.0))
         if s.exact_inertia:
             block.setMomentOfInertia(*(unit * unit * moment for moment in body.inertia))
         if s.geometry == "box" or carried:
-            box = self._dart.dynamics.BoxShape([2.0 * x for x in half])
+            box = self._library.dynamics.BoxShape([2.0 * x for x in half])
             self._shapes.append(self._attached(block, box, (0.0, 0.0, 0.0)))
         if s.geometry == "corners":
             radius = s.corner_radius * scene.system.width
-            ball = self._dart.dynamics.SphereShape(radius * unit)
+            ball = self._library.dynamics.SphereShape(radius * unit)
             for corner in touching_spheres(scene, number, radius, planar=s.planar):
                 place = counted(corner, unit)
                 self._shapes.append(self._attached(block, ball, place))
@@ -210,11 +202,7 @@ class DartWorld:
             self._drive(step)
         world.step(False)
         self._dt = step.dt_s
-        if self._led:
-            self._place = self.mover.getPosition(0)
-            self.lag_m = max(self.lag_m, abs(self._place / unit - step.base_x))
-        elif self._way:
-            self._place = step.base_x * unit
+        self._came(step, self.mover.getPosition(0) if self._led else None)
 
     @property
     def yaw(self) -> float | None:
@@ -232,7 +220,8 @@ class DartWorld:
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
-        return self._fault or disagreement({"step": (self._dt or None, self.world.getTimeStep())})
+        step = {"step": (self._dt or None, self.world.getTimeStep())}
+        return super().fault() or disagreement(step)
 
     def close(self) -> None:
         """Release the engine's memory."""
@@ -283,43 +272,39 @@ class DartWorld:
             pairs[f"moment {number}"] = (moment, found.getInertia().getMoment()[1, 1])
         return disagreement(pairs)
 
-
-def script(scene: Scene, settings: DartSettings, dt_s: float) -> Script:
-    """Return a scene as calls of DART; see `engines.run.export`."""
-    notes, unit = Notes(), settings.unit
-    world = DartWorld(scene, settings, dt_s, notes.of(imported("dartpy"), "dart"))
-    notes.name(world=world.world, drive=world.mover, floor=world.floor, joint=world.joints)
-    notes.name(**world.named)
-    notes.name_bodies(world.bodies)
-    notes.listed(joints=world.joints)
-    floor, (along, _, theta) = settings.floor if scene.frame == "world" else "", world.coordinates
-    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
-    led = [f"drive.setCommands((({x} - drive.getPosition(0)) / DT, 0.0, 0.0))"]
-    moves = {
-        **{"": [], "velocity": led, "servo": led},
-        "both": [
-            f"drive.setPositions(({x} - DT * {velocity}, 0.0, 0.0))",
-            f"drive.setCommands(({velocity}, 0.0, 0.0))",
-        ],
-    }
-    one_of("floor of a script", floor, moves)
-    under = {"": "", "both": f" - {x}"}.get(floor, " - drive.getPosition(0)")
-    words = ("Detector", "Solver(", "Enabled", "ZXPlane", "FrictionCoeff", "RestitutionCoeff")
-    return Script(
-        imports=("import dartpy as dart",),
-        settings=(f"world.setTimeStep({dt_s!r})", *notes.quoted(*words)),
-        build=(*notes.lines(), "world.setTimeStep(DT)"),
-        step=(
-            f"world.setGravity(({scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}))",
-            *moves[floor],
-            "world.step(False)",
-        ),
-        pose=(
-            f"theta = joints[number].getPosition({theta})",
-            f"rate = joints[number].getVelocity({theta})",
-        ),
-        place=f"(joints[0].getPosition({along}){under}) / {unit!r}",
-    )
+    def _script(self, notes: Notes, way: str) -> Script:
+        unit = self._unit
+        notes.name(world=self.world, drive=self.mover, floor=self.floor, joint=self.joints)
+        notes.name(**self.named)
+        notes.listed(joints=self.joints)
+        along, _, theta = self.coordinates
+        x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+        led = [f"drive.setCommands((({x} - drive.getPosition(0)) / DT, 0.0, 0.0))"]
+        moves = {
+            **{"": [], "velocity": led, "servo": led},
+            "both": [
+                f"drive.setPositions(({x} - DT * {velocity}, 0.0, 0.0))",
+                f"drive.setCommands(({velocity}, 0.0, 0.0))",
+            ],
+        }
+        one_of("floor of a script", way, moves)
+        under = {"": "", "both": f" - {x}"}.get(way, " - drive.getPosition(0)")
+        words = ("Detector", "Solver(", "Enabled", "ZXPlane", "FrictionCoeff", "RestitutionCoeff")
+        return Script(
+            imports=("import dartpy as dart",),
+            settings=(f"world.setTimeStep({self._ordinary!r})", *notes.quoted(*words)),
+            build=(*notes.lines(), "world.setTimeStep(DT)"),
+            step=(
+                f"world.setGravity(({scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}))",
+                *moves[way],
+                "world.step(False)",
+            ),
+            pose=(
+                f"theta = joints[number].getPosition({theta})",
+                f"rate = joints[number].getVelocity({theta})",
+            ),
+            place=f"(joints[0].getPosition({along}){under}) / {unit!r}",
+        )
 
 
 TUNED = DartSettings(
@@ -337,48 +322,34 @@ MASSLESS = "friction without mass: the Dantzig solver fails, and PGS answers in 
 UNFINISHED = "an iteration that may end before friction holds: a pivot slides in some cases"
 UNIT_INERTIA = "the mass alone leaves the moments of inertia at 1 kg m2"
 
-DOCUMENTED = (
-    Citation("step", "0.001 s, the default", "World.getTimeStep"),
-    Citation("solver", "Dantzig's, the default", "ConstraintSolver.getBoxedLcpSolver"),
-    Citation(
-        "solver",
-        "where it fails PGS, 30 iterations, from the last step's impulses",
-        "dart pull request 1265; PgsBoxedLcpSolverOption; ContactWarmStartCache.hpp",
-    ),
-    Citation("collision", "FCL's, the default", "ConstraintSolver.getCollisionDetector"),
-    Citation(
-        "contact",
-        "of a depth 0.01 a step is corrected, by at most 0.001 a second",
-        "ContactConstraint.cpp; split impulse is off",
-    ),
-    Citation("sleeping", "on, the default since 6.19", "World.getDeactivationOptions"),
-    Citation(
-        "sleeping",
-        "after 0.5 s below 0.01 m/s and 0.05 rad/s; commands are said to wake",
-        "DeactivationOptions.hpp, dart pull request 2920",
-    ),
-    Citation(
-        "friction", "1, the default, of a pair the smaller", "DynamicsAspect.getFrictionCoeff"
-    ),
-    Citation(
-        "floor",
-        "a joint of ActuatorType VELOCITY, setCommands; or SERVO, a dynamic one",
-        "dart/dynamics/detail/JointAspect.hpp, ActuatorType",
-    ),
-)
+DOCUMENTED = citations("""
+step | 0.001 s, the default | World.getTimeStep
+solver | Dantzig's, the default | ConstraintSolver.getBoxedLcpSolver
+solver | where it fails PGS, 30 iterations, from the last step's impulses | dart pull request
+    1265; PgsBoxedLcpSolverOption; ContactWarmStartCache.hpp
+collision | FCL's, the default | ConstraintSolver.getCollisionDetector
+contact | of a depth 0.01 a step is corrected, by at most 0.001 a second | ContactConstraint.cpp;
+    split impulse is off
+sleeping | on, the default since 6.19 | World.getDeactivationOptions
+sleeping | after 0.5 s below 0.01 m/s and 0.05 rad/s; commands are said to wake |
+    DeactivationOptions.hpp, dart pull request 2920
+friction | 1, the default, of a pair the smaller | DynamicsAspect.getFrictionCoeff
+floor | a joint of ActuatorType VELOCITY, setCommands; or SERVO, a dynamic one |
+    dart/dynamics/detail/JointAspect.hpp, ActuatorType
+""")
 """What its documentation sets, in dartpy 6.20.0."""
 
-RECOMMENDED = (
-    Citation("sleeping", "off, for who needs the path of before", "dart pull requests 2920, 3086"),
-    Citation("solver", "Dantzig's, the default, which is more precise", "dart issue 961"),
-)
+RECOMMENDED = citations("""
+sleeping | off, for who needs the path of before | dart pull requests 2920, 3086
+solver | Dantzig's, the default, which is more precise | dart issue 961
+""")
 """What it recommends: no page of it is on stiff contact."""
 
-PASTED = (
-    Citation("solver", "NsgsFrictionSolver: with Dantzig's a pivot slides", "measured here"),
-    Citation("inertia", "set beside the mass, which leaves it at 1 kg m²", "measured here"),
-    Citation("sleeping", "off, for who needs the path of before", "dart pull requests 2920, 3086"),
-)
+PASTED = citations("""
+solver | NsgsFrictionSolver: with Dantzig's a pivot slides | measured here
+inertia | set beside the mass, which leaves it at 1 kg m² | measured here
+sleeping | off, for who needs the path of before | dart pull requests 2920, 3086
+""")
 
 FACTORS = (
     factor("aside", level("no", trap=MASSLESS, aside=False), name="base in the plane"),
@@ -414,11 +385,8 @@ FACTORS = (
     factor("friction"),
     moving_base("both", "velocity", "servo", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default", settings=DartSettings(), step_s=1e-3, documented=DOCUMENTED, frame="world"
-)
+NAIVE = default(DartSettings(), 1e-3, DOCUMENTED)
 
 ENGINE = Engine(
     name="dart",
@@ -426,25 +394,20 @@ ENGINE = Engine(
     library="dartpy",
     build=DartWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, sleeping=False),
         NAIVE.pasted(*PASTED, solver="NSGS", sleeping=False),
         Preset(name="tuned", settings=TUNED, step=5e-4),
-        Preset(
-            name="landing",
-            settings=replace(TUNED, margin=0.5, reflection=True),
-            stepping=Stepping.LANDING,
+        landing(
+            replace(TUNED, margin=0.5, reflection=True),
+            {Help.REFLECTION: {"reflection": False}, Help.MARGIN: {"margin": None}},
             stacked={"margin": 30.0, "unit": 1e7},
-            helped_by={
-                Help.STEPS: None,
-                Help.REFLECTION: {"reflection": False},
-                Help.MARGIN: {"margin": None},
-            },
         ),
     ),
     rest_factor=1.0,
-    script=script,
+    script=DartWorld.script,
     factors=FACTORS,
 )

@@ -3,6 +3,7 @@
 import enum
 import importlib.util
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
@@ -30,6 +31,12 @@ class Citation(NamedTuple):
     setting: str
     value: str
     where: str
+
+
+def citations(table: str) -> tuple[Citation, ...]:
+    """Read "setting | value | where", one a line; a line that begins with blanks goes on."""
+    rows = re.split(r"\n(?! )", table.strip("\n"))
+    return tuple(Citation(*" ".join(row.split()).split(" | ")) for row in rows)
 
 
 Builder = Callable[[Scene, Any, float], World]
@@ -132,26 +139,24 @@ class Preset:
 
     def at_rest(self) -> "Preset":
         """Return the same on a base at rest, of which no documentation speaks."""
-        return replace(self, name=AT_REST, title="", frame="base", documented=())
+        return self._changed(AT_REST, (), {}, frame="base")
 
     def recommended(
         self, *documented: Citation, step_s: float | None = None, **settings: Any
     ) -> "Preset":
         """Return the same with what is recommended, and where it is."""
-        return replace(
-            self,
-            name=RECOMMENDED,
-            title="",
-            settings=replace(self.settings, **settings),
-            step_s=step_s or self.step_s,
-            documented=documented,
-        )
+        return self._changed(RECOMMENDED, documented, settings, step_s=step_s or self.step_s)
 
     def pasted(self, *documented: Citation, **settings: Any) -> "Preset":
         """Return the same with a few lines to paste, on a base at rest at a friction of 0.8."""
-        changed = replace(self.settings, **{"friction": 0.8, **settings})
-        still = replace(self.at_rest(), name=PASTED, settings=changed, own={})
-        return replace(still, documented=documented, title=TITLES[PASTED])
+        rough = {"friction": 0.8, **settings}
+        return self._changed(PASTED, documented, rough, frame="base", own={})
+
+    def _changed(
+        self, name: str, documented: tuple[Citation, ...], settings: Mapping[str, Any], **own: Any
+    ) -> "Preset":
+        changed = replace(self.settings, **settings)
+        return replace(self, name=name, title="", settings=changed, documented=documented, **own)
 
     def takes(self, **settings: Any) -> bool:
         """Return whether its settings can be changed so."""
@@ -169,6 +174,31 @@ class Preset:
         return self.step if self.stepping is Stepping.FIXED else 1.0 / ACCURACIES[accuracy]
 
 
+def default(settings: Any, step_s: float, documented: tuple[Citation, ...], **own: float) -> Preset:
+    """Return a library as its documentation shows it, and its own settings where others are."""
+    return Preset(
+        name="default",
+        settings=settings,
+        step_s=step_s,
+        documented=documented,
+        frame="world",
+        own=own,
+    )
+
+
+def landing(
+    settings: Any, helped_by: Mapping[Help, Mapping[str, Any]] | None = None, **options: Any
+) -> Preset:
+    """Return steps that land, and what helps besides; options are of `Preset`."""
+    return Preset(
+        name="landing",
+        settings=settings,
+        stepping=Stepping.LANDING,
+        helped_by={Help.STEPS: None, **(helped_by or {})},
+        **options,
+    )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Engine:
     """A physics engine: its name, what it can do, how it is used.
@@ -183,6 +213,7 @@ class Engine:
     core : whether the published studies ask it by default
     frames : those of `FRAMES` that it has
     stacks : whether it can hold several bodies, and bodies that rest on others
+    offsets : whether its block can have a mass that is not spread evenly
     precision : of its numbers
     shortest_step : p dt below which a step has no effect that is resolved
     rest_factor : up to how many ordinary steps long one of a block at rest may be; 1 where how the
@@ -203,6 +234,7 @@ class Engine:
     core: bool = False
     frames: tuple[str, ...] = FRAMES
     stacks: bool = False
+    offsets: bool = False
     precision: Precision = Precision.DOUBLE
     shortest_step: float = 1e-12
     rest_factor: float = REST_FACTOR
@@ -266,22 +298,26 @@ class Engine:
 
     def _lacks(self, scene: Scene, preset: Preset) -> str:
         """Say what of a scene it cannot do with a preset, or return an empty string."""
-        layout = scene.layout
-        stacked = len(layout.bodies) > 1
-        if stacked and not self.stacks:
-            return f"{self.title} is not built here for {STACKED}"
-        if preset.stepping is Stepping.LANDING and not layout.rocking:
-            return f"nothing rocks here on whose impacts {self.name}:{preset.name} could land"
-        if scene.rest_s and preset.stepping is not Stepping.FIXED:
-            return "only equal steps can begin before the motion"
-        if stacked and preset.stacked is None:
-            return f"{self.name}:{preset.name} is not built here for {STACKED}"
-        if (frame := scene.frame or preset.frame) not in self.frames:
-            return f"{self.title} has no frame {frame!r}"
-        return ""
+        layout, lands = scene.layout, preset.stepping is Stepping.LANDING
+        stacked, built = len(layout.bodies) > 1, "is not built here for"
+        uneven, frame = not layout.bodies[0].is_homogeneous, scene.frame or preset.frame
+        own = f"{self.name}:{preset.name}"
+        lacking = {
+            f"{self.title} {built} {STACKED}": stacked and not self.stacks,
+            f"{self.title} {built} {UNEVEN}": uneven and not self.offsets,
+            f"nothing rocks here on whose impacts {own} could land": lands and not layout.rocking,
+            "only equal steps can begin before the motion": (
+                scene.rest_s and preset.stepping is not Stepping.FIXED
+            ),
+            f"{own} {built} {UNEVEN}": uneven and lands,
+            f"{own} {built} {STACKED}": stacked and preset.stacked is None,
+            f"{self.title} has no frame {frame!r}": frame not in self.frames,
+        }
+        return next((words for words, lacks in lacking.items() if lacks), "")
 
 
 STACKED = "bodies that rest on other bodies"
+UNEVEN = "a block whose mass is not spread evenly"
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,24 +15,19 @@ from typing import Any
 
 import numpy as np
 
-from engines.declaration import Citation, Engine, Preset, Stepping
+from engines.declaration import Engine, Preset, Stepping, citations, default
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import NO_JAM, imported, yaw_of
+from engines.parts import NO_JAM, Adapter, imported, yaw_of
 from engines.run.export import Notes
 from engines.run.ground import mean_velocity_of
 from engines.scene import Scene
-from engines.settings import check, disagreement, given, setting
+from engines.settings import Settings, disagreement, given, setting
 from engines.shapes import floor_half_size, half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Script, Step
+from engines.world import FloatArray, Moment, Script, Step
 
 MODULES = (
-    "geometry",
-    "math",
-    "multibody.math",
-    "multibody.plant",
-    "multibody.tree",
-    "systems.analysis",
-    "systems.framework",
+    *("geometry", "math", "multibody.math", "multibody.plant", "multibody.tree"),
+    *("systems.analysis", "systems.framework"),
 )
 """Parts of the library that are needed; all of it takes several times as long to import."""
 
@@ -69,7 +64,7 @@ does a rotation's error in units of kappa: 5e-5 at 1e-8, 3e-5 at 2e-9, and no le
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DrakeSettings:
+class DrakeSettings(Settings):
     """Settings of Drake, by default its own; None leaves a setting to the library."""
 
     # a box touches in one point, its deepest; corners are small spheres at those
@@ -94,80 +89,86 @@ class DrakeSettings:
     accuracy: float | None = setting(above=0.0, most=1.0)
     floor: str = setting("drive", names=("drive", "position"))  # by its joint's drive, or by place
 
-    def __post_init__(self) -> None:
-        check(self)
+
+@cache
+def imported_parts() -> SimpleNamespace:
+    """Import the library; return all names of its parts together."""
+    names: dict[str, Any] = {}
+    for part in MODULES:
+        names |= vars(imported(f"pydrake.{part}"))
+    logging.getLogger("drake").setLevel(logging.ERROR)
+    return SimpleNamespace(**names)
 
 
-class DrakeWorld:
+class DrakeWorld(Adapter):
     """Bodies on a half-space that does not move, or on a box on a rail."""
 
-    def __init__(
-        self, scene: Scene, settings: DrakeSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._drake: Any = imported_parts() if library is None else library
-        self._s, self._dt, self._continuous = settings, dt_s, settings.solver == CENIC
+    library = staticmethod(imported_parts)
+    called = "drake"
+
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        settings = self._s
+        self._ordinary, self._continuous = dt_s, settings.solver == CENIC
         self.moment = Moment.MIDDLE if settings.accuracy is None else Moment.END
-        self._count, self._time, self._place, self._problem = 0, 0.0, 0.0, ""
-        self._gravity, self._moving = scene.system.gravity, scene.frame == "world"
+        self._count, self._time, self._problem = 0, 0.0, ""
+        self._gravity, self._moving = scene.system.gravity, bool(self._way)
         self._velocity_of = mean_velocity_of(scene.motion.segments())
         self._radius = settings.corner_radius * scene.system.width
-        builder = self._drake.DiagramBuilder()
+        builder = self._library.DiagramBuilder()
         self.plant, self.graph = self._new_plant(scene, builder)
         self.properties = self._new_contact(scene)
-        self.ground, self._here = self.plant.world_body(), self._drake.RigidTransform()
-        self.blocks = self._drake.default_model_instance()
+        self.ground, self._here = self.plant.world_body(), self._library.RigidTransform()
+        self.blocks = self._library.default_model_instance()
         self.floor: Any = None
         self.rail: Any = None
         if self._moving:
             self.floor, self.rail = self._new_floor(scene)
         else:
-            self._add_shape(self.ground, self._here, self._drake.HalfSpace(), "base")
+            self._add_shape(self.ground, self._here, self._library.HalfSpace(), "base")
         turned = None
         if settings.planar:
-            turned = self._drake.RigidTransform(self._drake.RotationMatrix([*map(list, PLANE)]))
+            turned = self._library.RigidTransform(self._library.RotationMatrix([*map(list, PLANE)]))
         self.bodies = [self._new_body(scene, number, turned) for number in range(len(scene.bodies))]
         self.plant.Finalize()
-        self.simulator = self._drake.Simulator(builder.Build())
+        self.simulator = self._library.Simulator(builder.Build())
         root = self.simulator.get_mutable_context()
         self.context = self.plant.GetMyMutableContextFromRoot(root)
         self._begin(scene)
         if self._continuous:
             self._integrator = self._new_integrator(scene)
         self.simulator.Initialize()
-        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
-        if library is None:
-            self._field = self.plant.mutable_gravity_field()
-            self._fault = self._read_back(scene)
         if self._moving:
             instance = self.floor.model_instance()
-            self.desired, self.lag_m = self.plant.get_desired_state_input_port(instance), 0.0
+            self.desired = self.plant.get_desired_state_input_port(instance)
+        else:
+            self.lag_m = None
 
     def _new_plant(self, scene: Scene, builder: Any) -> Any:
         s, discrete = self._s, not self._continuous
         scale = scene.system.p * scene.system.R
         config = {
-            "time_step": self._dt if discrete else 0.0,
+            "time_step": self._ordinary if discrete else 0.0,
             "discrete_contact_approximation": s.solver if discrete else None,
             "stiction_tolerance": None if s.stiction is None else s.stiction * scale,
             "sap_near_rigid_threshold": s.near_rigid,
         }
-        made = self._drake.MultibodyPlantConfig(**given(config))
-        return self._drake.AddMultibodyPlant(made, builder)
+        made = self._library.MultibodyPlantConfig(**given(config))
+        return self._library.AddMultibodyPlant(made, builder)
 
     def _new_contact(self, scene: Scene) -> Any:
         """Return properties of a shape, which has half of a contact's stiffness and relaxation."""
         s, layout = self._s, scene.layout
         stiff, dissipation = s.stiffness, s.dissipation
         if stiff is not None:
-            stiff = 2.0 * stiff * layout.carried(layout.contacts[0]) / self._dt**2
+            stiff = 2.0 * stiff * layout.carried(layout.contacts[0]) / self._ordinary**2
         if dissipation is not None:
             dissipation = dissipation / (scene.system.p * scene.system.R)
-        properties = self._drake.ProximityProperties()
-        rough = self._drake.CoulombFriction(float(s.friction), float(s.friction))
+        properties = self._library.ProximityProperties()
+        rough = self._library.CoulombFriction(float(s.friction), float(s.friction))
         material = given({"point_stiffness": stiff, "dissipation": dissipation})
-        self._drake.AddContactMaterial(properties=properties, friction=rough, **material)
+        self._library.AddContactMaterial(properties=properties, friction=rough, **material)
         if s.relaxation is not None:
-            relaxation = 0.5 * s.relaxation * self._dt
+            relaxation = 0.5 * s.relaxation * self._ordinary
             properties.AddProperty("material", "relaxation_time", relaxation)
         return properties
 
@@ -176,7 +177,7 @@ class DrakeWorld:
 
     def _new_floor(self, scene: Scene) -> Any:
         """Return a box on a rail, which a drive leads, and its joint."""
-        drake, plant, half = self._drake, self.plant, floor_half_size(scene)
+        drake, plant, half = self._library, self.plant, floor_half_size(scene)
         size = [2.0 * x for x in half]
         inertia = drake.SpatialInertia.SolidBoxWithMass(scene.bodies[0].mass, *size)
         floor = plant.AddRigidBody("floor", plant.AddModelInstance("floor"), inertia)
@@ -189,9 +190,12 @@ class DrakeWorld:
         return floor, rail
 
     def _new_body(self, scene: Scene, number: int, turned: Any) -> Any:
-        s, drake, plant, body = self._s, self._drake, self.plant, scene.bodies[number]
+        s, drake, plant, body = self._s, self._library, self.plant, scene.bodies[number]
         name, size = f"block{number or ''}", [2.0 * half for half in half_size(body)]
         inertia = drake.SpatialInertia.SolidBoxWithMass(body.mass, *size)
+        if not body.is_homogeneous:
+            turning, place = drake.RotationalInertia(*body.inertia), [body.offset, 0.0, 0.0]
+            inertia = drake.SpatialInertia.MakeFromCentralInertia(body.mass, place, turning)
         block = plant.AddRigidBody(name, self.blocks, inertia)
         if s.planar:
             ends = (("on the base", self.ground), ("in the plane", block))
@@ -211,7 +215,7 @@ class DrakeWorld:
 
     def _begin(self, scene: Scene) -> None:
         """Put the bodies where, and as fast, as they begin."""
-        drake, begins = self._drake, [body.at for body in scene.bodies]
+        drake, begins = self._library, [body.at for body in scene.bodies]
         if self._s.planar:
             places = [q for at in begins for q in (at.z, at.x, at.theta)]
             speeds = [v for at in begins for v in (at.velocity_z, at.velocity_x, at.rate)]
@@ -229,8 +233,8 @@ class DrakeWorld:
         """Return what takes the steps of a continuous plant."""
         # without an estimate of the error each step goes to where it is told
         told, simulator = self._s.accuracy is None, self.simulator
-        longest = LONGEST * self._dt if told else self._dt
-        self._drake.ResetIntegratorFromFlags(simulator, scheme=CENIC, max_step_size=longest)
+        longest = LONGEST * self._ordinary if told else self._ordinary
+        self._library.ResetIntegratorFromFlags(simulator, scheme=CENIC, max_step_size=longest)
         integrator = simulator.get_mutable_integrator()
         integrator.set_fixed_step_mode(told)
         if self._s.accuracy is not None:
@@ -242,13 +246,13 @@ class DrakeWorld:
         """Advance by a step."""
         if self._problem:
             return
-        self._field.set_gravity_vector((step.pull_x, 0.0, step.pull_z))
+        self.plant.mutable_gravity_field().set_gravity_vector((step.pull_x, 0.0, step.pull_z))
         if self._moving:
             self._drive(step.base_x, step.base_velocity)
         self._count += 1
         self._time += step.dt_s
         # a discrete plant changes at the beginning of a step: half of one later it has, once
-        self._go_on(self._time if self._continuous else (self._count - 0.5) * self._dt)
+        self._go_on(self._time if self._continuous else (self._count - 0.5) * self._ordinary)
         if self._moving:
             self._look_back(step.base_x)
 
@@ -265,7 +269,7 @@ class DrakeWorld:
             return 1
         gained = self._velocity_of(end_s, end_s) - self._velocity_of(self._time, self._time)
         pull_x = 0.0 if self._moving else -gained / (end_s - self._time)
-        self._field.set_gravity_vector((pull_x, 0.0, -self._gravity))
+        self.plant.mutable_gravity_field().set_gravity_vector((pull_x, 0.0, -self._gravity))
         before = self._integrator.get_num_steps_taken()
         within = np.linspace(self._time, end_s, WITHIN + 1)[1:-1] if self._moving else ()
         for end in (*map(float, within), end_s):
@@ -317,7 +321,7 @@ class DrakeWorld:
 
     def fault(self) -> str:
         """Say which setting was not taken, or what the library gave up on."""
-        return self._fault or self._problem
+        return super().fault() or self._problem
 
     def close(self) -> None:
         """Release the engine's memory."""
@@ -333,132 +337,86 @@ class DrakeWorld:
         turning = inertia.CalcRotationalInertia().get_moments()
         pairs: dict[str, tuple[Any, Any]] = {
             "mass": (body.mass, block.get_mass(self.context)),
-            "moment": (body.inertia[1], turning[1]),
+            "moment": (body.about_middle, turning[1]),
             "friction": (s.friction, friction),
-            "step": (0.0 if self._continuous else self._dt, plant.time_step()),
+            "step": (0.0 if self._continuous else self._ordinary, plant.time_step()),
         }
         if not self._continuous:
             taken = plant.get_discrete_contact_approximation().name.removeprefix("k").lower()
             pairs["solver"] = (s.solver, taken)
         return disagreement(pairs)
 
-
-@cache
-def imported_parts() -> SimpleNamespace:
-    """Import the library; return all names of its parts together."""
-    names: dict[str, Any] = {}
-    for part in MODULES:
-        names |= vars(imported(f"pydrake.{part}"))
-    logging.getLogger("drake").setLevel(logging.ERROR)
-    return SimpleNamespace(**names)
-
-
-def script(scene: Scene, settings: DrakeSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Drake; see `engines.run.export`."""
-    notes, count, planar = Notes(), len(scene.bodies), settings.planar
-    world = DrakeWorld(scene, settings, dt_s, notes.of(imported_parts(), "drake"))
-    notes.name(
-        plant=world.plant, scene_graph=world.graph, properties=world.properties, ground=world.ground
-    )
-    notes.name(blocks=world.blocks, simulator=world.simulator, context=world.context)
-    notes.name_bodies(world.bodies)
-    moving, continuous = scene.frame == "world", settings.solver == CENIC
-    if moving:
-        notes.name(floor=world.floor, rail=world.rail, desired=world.desired)
-    turned = "-base_velocity])  # CENIC turns it round" if continuous else "base_velocity])"
-    if planar:
-        pose = ("theta = state[3 * number + 2]", f"rate = state[3 * number + {3 * count + 2}]")
-    else:
-        pose = (
-            "theta = 2.0 * math.atan2(state[7 * number + 2], state[7 * number])",
-            f"rate = state[6 * number + {7 * count + 1}]",
+    def _script(self, notes: Notes, way: str) -> Script:
+        count, planar = len(self.bodies), self._s.planar
+        notes.name(
+            plant=self.plant, scene_graph=self.graph, properties=self.properties, ground=self.ground
         )
-    along = (IN_PLANE if planar else IN_SPACE)[0]
-    words = (
-        "Config(",
-        "Friction(",
-        "Material(",
-        "AddProperty",
-        "Gains(",
-        "Integrator",
-        "set_",
-        "Sphere(",
-    )
-    return Script(
-        imports=("import pydrake.all as drake",),
-        settings=notes.quoted(*words),
-        # a discrete plant changes at the beginning of a step: half of one later it has, once
-        build=(*notes.lines(), f"end = {'0.0' if continuous else '-0.5 * DT'}"),
-        step=(
-            "global end",
-            "plant.mutable_gravity_field().set_gravity_vector((pull_x, 0.0, pull_z))",
-            *(f"desired.FixValue(context, [base_x, {turned}",) * moving,
-            "end += DT",
-            "simulator.AdvanceTo(end)",
-        ),
-        pose=("state = plant.GetPositionsAndVelocities(context, blocks)", *pose),
-        place=f"plant.GetPositions(context, blocks)[{along}]"
-        + " - rail.get_translation(context)" * moving,
-    )
+        notes.name(blocks=self.blocks, simulator=self.simulator, context=self.context)
+        moving, continuous = bool(way), self._s.solver == CENIC
+        if moving:
+            notes.name(floor=self.floor, rail=self.rail, desired=self.desired)
+        turned = "-base_velocity])  # CENIC turns it round" if continuous else "base_velocity])"
+        if planar:
+            pose = ("theta = state[3 * number + 2]", f"rate = state[3 * number + {3 * count + 2}]")
+        else:
+            pose = (
+                "theta = 2.0 * math.atan2(state[7 * number + 2], state[7 * number])",
+                f"rate = state[6 * number + {7 * count + 1}]",
+            )
+        along = (IN_PLANE if planar else IN_SPACE)[0]
+        words = "Config( Friction( Material( AddProperty Gains( Integrator set_ Sphere("
+        return Script(
+            imports=("import pydrake.all as drake",),
+            settings=notes.quoted(*words.split()),
+            # a discrete plant changes at the beginning of a step: half of one later it has, once
+            build=(*notes.lines(), f"end = {'0.0' if continuous else '-0.5 * DT'}"),
+            step=(
+                "global end",
+                "plant.mutable_gravity_field().set_gravity_vector((pull_x, 0.0, pull_z))",
+                *(f"desired.FixValue(context, [base_x, {turned}",) * moving,
+                "end += DT",
+                "simulator.AdvanceTo(end)",
+            ),
+            pose=("state = plant.GetPositionsAndVelocities(context, blocks)", *pose),
+            place=f"plant.GetPositions(context, blocks)[{along}]"
+            + " - rail.get_translation(context)" * moving,
+        )
 
 
 CONFIG = "MultibodyPlantConfig, drake 1.51.1"
 BOTH_CONFIGS = "MultibodyPlantConfig, DefaultProximityProperties, drake 1.51.1"
-LAGGING = "discrete_contact_approximation = 'lagged', stiction_tolerance = 0.0001"
 
-DOCUMENTED = (
-    Citation("step", "time_step = 0.001", CONFIG),
-    Citation("solver", LAGGING, CONFIG),
-    Citation(
-        "contact",
-        "contact_model = 'hydroelastic_with_fallback', compliance_type = 'undefined', that is "
-        "points; point_stiffness = 1000000, hunt_crossley_dissipation = 50",
-        BOTH_CONFIGS,
-    ),
-    Citation(
-        "shapes",
-        "the table is a <box> with no properties of contact",
-        "tutorials/authoring_multibody_simulation.ipynb, drake 1.51.1",
-    ),
-    Citation(
-        "friction",
-        "dynamic_friction = static_friction = 0.5, of a pair 2 a b/(a + b); 1.0 is used",
-        "DefaultProximityProperties, drake 1.51.1",
-    ),
-    Citation(
-        "without effect",
-        "penetration_allowance = 0.001, sap_near_rigid_threshold = 1, relaxation_time = 0.1, "
-        "contact_surface_representation = 'polygon'",
-        BOTH_CONFIGS,
-    ),
-    Citation(
-        "floor",
-        "'infinite PD gains for 1-dof joints': a prismatic joint, set_controller_gains, "
-        "get_desired_state_input_port",
-        "RobotLocomotion/drake issue 20496; MultibodyPlant, 'Using PD controlled actuators', "
-        "drake 1.51.1",
-    ),
-    Citation(
-        "gains",
-        "{1e4, 1} on a rail that carries 0.1 kg; of 'infinite' ones there is no example: 1e8 times "
-        "those are used, and a floor of the block's mass",
-        "examples/multibody/deformable/deformable_torus.cc",
-    ),
-)
-"""What the preset "default" is documented by."""
+DOCUMENTED = citations(f"""
+step | time_step = 0.001 | {CONFIG}
+solver | discrete_contact_approximation = 'lagged', stiction_tolerance = 0.0001 | {CONFIG}
+contact | contact_model = 'hydroelastic_with_fallback', compliance_type = 'undefined', that is
+    points; point_stiffness = 1000000, hunt_crossley_dissipation = 50 | {BOTH_CONFIGS}
+shapes | the table is a <box> with no properties of contact |
+    tutorials/authoring_multibody_simulation.ipynb, drake 1.51.1
+friction | dynamic_friction = static_friction = 0.5, of a pair 2 a b/(a + b); 1.0 is used |
+    DefaultProximityProperties, drake 1.51.1
+without effect | penetration_allowance = 0.001, sap_near_rigid_threshold = 1, relaxation_time =
+    0.1, contact_surface_representation = 'polygon' | {BOTH_CONFIGS}
+floor | 'infinite PD gains for 1-dof joints': a prismatic joint, set_controller_gains,
+    get_desired_state_input_port | RobotLocomotion/drake issue 20496; MultibodyPlant, 'Using PD
+    controlled actuators', drake 1.51.1
+gains | {{1e4, 1}} on a rail that carries 0.1 kg; of 'infinite' ones there is no example: 1e8
+    times those are used, and a floor of the block's mass |
+    examples/multibody/deformable/deformable_torus.cc
+""")
 
-RECOMMENDED = (
-    Citation("solver", "similar, where impacts are to be resolved", "DiscreteContactApproximation"),
-    Citation("shapes", "small spheres at the corners", "contact_model_doxygen.h, Point contact"),
-    Citation("contact", "stiffness by the depth under the weight: 1e7 N/m", "the same, Stiffness"),
-)
+RECOMMENDED = citations("""
+solver | similar, where impacts are to be resolved | DiscreteContactApproximation
+shapes | small spheres at the corners | contact_model_doxygen.h, Point contact
+contact | stiffness by the depth under the weight: 1e7 N/m | the same, Stiffness
+""")
 """What it recommends for rigid contact; the stiffness is for 375 kg, and follows the mass."""
 
-PASTED = (
-    Citation("solver", "similar, where impacts are to be resolved", "DiscreteContactApproximation"),
-    Citation("shapes", "small spheres at the corners", "contact_model_doxygen.h, Point contact"),
-    Citation("contact", "4 m/dt² a contact, 8 m/dt² of each of its two bodies", "measured here"),
-)
+PASTED = citations("""
+solver | similar, where impacts are to be resolved | DiscreteContactApproximation
+shapes | small spheres at the corners | contact_model_doxygen.h, Point contact
+contact | 4 m/dt² a contact, 8 m/dt² of each of its two bodies | measured here
+""")
 
 TUNED = DrakeSettings(
     geometry="corners",
@@ -496,16 +454,8 @@ FACTORS = (
     factor("friction", level("1.3", friction=NO_JAM)),
     moving_base("drive", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default",
-    settings=DrakeSettings(),
-    step_s=1e-3,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.5},
-)
+NAIVE = default(DrakeSettings(), 1e-3, DOCUMENTED, friction=0.5)
 
 ENGINE = Engine(
     name="drake",
@@ -514,6 +464,7 @@ ENGINE = Engine(
     packages=("drake",),
     build=DrakeWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),
@@ -528,6 +479,6 @@ ENGINE = Engine(
             accuracy_knob=("accuracy", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 2e-9)),
         ),
     ),
-    script=script,
+    script=DrakeWorld.script,
     factors=FACTORS,
 )

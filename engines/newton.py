@@ -12,16 +12,14 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from engines.declaration import Citation, Engine, Precision, Preset
+from engines.declaration import Engine, Precision, Preset, citations, default
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import NO_JAM, imported, silence, yaw_of
+from engines.parts import NO_JAM, Adapter, imported, silence, yaw_of
 from engines.run.export import Notes
 from engines.scene import Scene
 from engines.settings import check, disagreement, given, setting
 from engines.shapes import half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Script, Step
+from engines.world import FloatArray, Script, Step
 
 MOST_CONTACTS = 4, 16
 """Room for so many contacts of a block, having four corners at its base, and of each pair of faces
@@ -205,64 +203,54 @@ idle: "OrderedDict[Hashable, Recorded]" = OrderedDict()
 """Models of this process whose run has ended, by what they are made of."""
 
 
-class NewtonWorld:
+class NewtonWorld(Adapter):
     """Bodies in space, on a plane that does not move, or on a kinematic one."""
 
-    moment = Moment.MIDDLE
+    library = "warp"
 
-    def __init__(self, scene: Scene, settings: NewtonSettings, dt_s: float) -> None:
-        self._s, self._dt, self._moving = settings, dt_s, scene.frame == "world"
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        self._ordinary = dt_s
         self._masses = [body.mass for body in scene.bodies]
-        self._gravity, self.lag_m = scene.system.gravity, 0.0
-        self._warp: Any = imported("warp")
-        self._warp.config.log_level = self._warp.LOG_ERROR
+        self._library.config.log_level = self._library.LOG_ERROR
         with silence():
-            kept = idle.pop(made_of(scene, settings, dt_s), None)
-            self._recorded = kept or Recorded(scene, settings, dt_s)
+            kept = idle.pop(made_of(scene, self._s, dt_s), None)
+            self._recorded = kept or Recorded(scene, self._s, dt_s)
             self._recorded.it.solver.reset(self._recorded.it.now)
-        self._force, self._place = self._recorded.force, self._recorded.place
+        self._force, self._places = self._recorded.force, self._recorded.place
         self._velocity = self._recorded.velocity
         for number, body in enumerate(scene.bodies):
             at, half = body.at, 0.5 * body.at.theta
-            self._place[number] = (at.x, 0.0, at.z, 0.0, math.sin(half), 0.0, math.cos(half))
+            self._places[number] = (at.x, 0.0, at.z, 0.0, math.sin(half), 0.0, math.cos(half))
             self._velocity[number] = (at.velocity_x, 0.0, at.velocity_z, 0.0, at.rate, 0.0)
-        if self._moving:
-            self._place[-1, 0] = 0.0
-        self._state = np.zeros((len(scene.bodies), len(Pose._fields)))
-        self._fault = self._read_back(scene)
+        if self._way:
+            self._places[-1, 0] = 0.0
 
     def step(self, step: Step) -> None:
         """Advance by a step, of which all are equal."""
-        if step.dt_s != self._dt:
+        if step.dt_s != self._ordinary:
             self._fault = self._fault or "its steps are recorded, and all of one length"
         for number, mass in enumerate(self._masses):
             self._force[number, 0] = mass * step.pull_x
-            self._force[number, 2] = mass * (step.pull_z + self._gravity)
-        if self._moving:
-            speed = step.base_velocity if self._s.floor == "velocity" else 0.0
+            self._force[number, 2] = mass * (step.pull_z + self._scene.system.gravity)
+        if self._way:
+            speed = step.base_velocity if self._way == "velocity" else 0.0
             self._recorded.joint_q[-1], self._recorded.joint_qd[-1] = step.base_x, speed
-        self._warp.capture_launch(self._recorded.graph)
-        if self._moving:
-            self.lag_m = max(self.lag_m, abs(float(self._place[-1, 0]) - step.base_x))
+        self._library.capture_launch(self._recorded.graph)
+        self._came(step, float(self._places[-1, 0]) if self._way else None)
 
     @property
     def yaw(self) -> float:
         """How far the first body has turned; see `engines.world.World`."""
-        x, y, z, w = self._place[0, 3:].tolist()
+        x, y, z, w = self._places[0, 3:].tolist()
         return yaw_of(w, x, y, z)
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
-        moved = float(self._place[-1, 0]) if self._moving else 0.0
         for number, row in enumerate(self._state):
-            x, _, z, _, turn_y, _, turn_w = self._place[number].tolist()
+            x, _, z, _, turn_y, _, turn_w = self._places[number].tolist()
             rate = float(self._velocity[number, 4])
-            row[:] = x - moved, z, 2.0 * math.atan2(turn_y, turn_w), rate
+            row[:] = x - self._place, z, 2.0 * math.atan2(turn_y, turn_w), rate
         return self._state
-
-    def fault(self) -> str:
-        """Say which setting was not taken, or that a step was not the one that is recorded."""
-        return self._fault
 
     def close(self) -> None:
         """Leave the engine's memory to the next run of the same bodies."""
@@ -338,37 +326,27 @@ def script(scene: Scene, settings: NewtonSettings, dt_s: float) -> Script:
 DOMINOES = "newton/examples/contacts/example_domino_spiral.py, newton 1.8.0"
 BELT = "newton/examples/basic/example_basic_conveyor.py, newton 1.8.0"
 
-DOCUMENTED = (
-    Citation("step", "fps = 100, sim_substeps = 10", BELT),
-    Citation("solver", "newton.solvers.SolverXPBD(model), the example's --solver by default", BELT),
-    Citation("iterations", "Defaults to 2.", "SolverXPBD, newton 1.8.0"),
-    Citation(
-        "contact",
-        "rigid_contact_relaxation 0.8, rigid_contact_con_weighting True, enable_restitution False",
-        "SolverXPBD, newton 1.8.0",
-    ),
-    Citation("damping", "angular_damping: Defaults to 0.0.", "SolverXPBD, newton 1.8.0"),
-    Citation(
-        "friction",
-        "mu: float = 1.0, of a pair the mean",
-        "ModelBuilder.ShapeConfig; xpbd/kernels.py, newton 1.8.0",
-    ),
-    Citation("gap", "contacts are made from rigid_gap 0.1 away", "ModelBuilder, newton 1.8.0"),
-    Citation(
-        "floor",
-        "is_kinematic=True on a joint; joint_q and joint_qd in each substep, then "
-        "eval_fk(..., body_flag_filter=BodyFlags.KINEMATIC)",
-        BELT,
-    ),
-    Citation("shapes", "a box on add_shape_plane(body=belt), where the solver is Kamino", BELT),
-)
+DOCUMENTED = citations(f"""
+step | fps = 100, sim_substeps = 10 | {BELT}
+solver | newton.solvers.SolverXPBD(model), the example's --solver by default | {BELT}
+iterations | Defaults to 2. | SolverXPBD, newton 1.8.0
+contact | rigid_contact_relaxation 0.8, rigid_contact_con_weighting True, enable_restitution False
+    | SolverXPBD, newton 1.8.0
+damping | angular_damping: Defaults to 0.0. | SolverXPBD, newton 1.8.0
+friction | mu: float = 1.0, of a pair the mean | ModelBuilder.ShapeConfig; xpbd/kernels.py, newton
+    1.8.0
+gap | contacts are made from rigid_gap 0.1 away | ModelBuilder, newton 1.8.0
+floor | is_kinematic=True on a joint; joint_q and joint_qd in each substep, then eval_fk(...,
+    body_flag_filter=BodyFlags.KINEMATIC) | {BELT}
+shapes | a box on add_shape_plane(body=belt), where the solver is Kamino | {BELT}
+""")
 """What the preset "default" is documented by: the example in which a floor moves."""
 
-RECOMMENDED = (
-    Citation("step", "a smaller dt first, before all else of a solver", "simulation_tuning.rst"),
-    Citation("step", "60 fps of 10 substeps, free dominoes", DOMINOES),
-    Citation("iterations", "20, free dominoes; enable_restitution, which is left off", DOMINOES),
-)
+RECOMMENDED = citations(f"""
+step | a smaller dt first, before all else of a solver | simulation_tuning.rst
+step | 60 fps of 10 substeps, free dominoes | {DOMINOES}
+iterations | 20, free dominoes; enable_restitution, which is left off | {DOMINOES}
+""")
 """What it recommends for less penetration: a smaller step, then more iterations."""
 
 TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)
@@ -388,11 +366,8 @@ FACTORS = (
     factor("friction"),
     moving_base("velocity", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default", settings=NewtonSettings(), step_s=1e-3, documented=DOCUMENTED, frame="world"
-)
+NAIVE = default(NewtonSettings(), 1e-3, DOCUMENTED)
 
 ENGINE = Engine(
     name="newton",

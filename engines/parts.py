@@ -9,8 +9,11 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
+import numpy as np
+
+from engines.run.export import Notes
 from engines.scene import Scene
-from engines.world import ContactPhase, Step
+from engines.world import ContactPhase, Moment, Pose, Script, Step
 
 NO_JAM = 1.3
 """Friction just below 4/3, from which on a corner of a homogeneous block may jam (Painlevé's
@@ -85,3 +88,57 @@ def imported(library: str) -> Any:
     with silence(), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return import_module(library)
+
+
+class Adapter:
+    """What worlds have alike: their settings, a base that may move, and what is read back.
+
+    `_build(scene, dt_s)` builds the scene, `_read_back(scene)` says which setting was not taken,
+    and `_script(notes, way)` writes it for somebody who has the library alone, `called` something.
+    `_way` is how a base that moves is moved, "" where it is at rest; `_place` and `_speed` are its
+    own, in units of length.
+    """
+
+    library: Any  # the name of a library, or what imports it
+    moment = Moment.MIDDLE
+    lag_m: Any
+    _unit = 1.0
+    _build: Any
+    _read_back: Any
+    _script: Any
+    bodies: list[Any]
+    called: str
+    without: tuple[str, ...] = ()
+
+    def __init__(self, scene: Scene, settings: Any, dt_s: float, library: Any = None) -> None:
+        own = self.library
+        self._library: Any = library or (own() if callable(own) else imported(own))
+        self._s, self._scene, self._ordinary = settings, scene, dt_s
+        self._way: str = settings.floor if scene.frame == "world" else ""
+        self._dt = self._speed = self._place = self.lag_m = 0.0
+        self._state = np.zeros((len(scene.bodies), len(Pose._fields)))
+        self._fault: str | None = None
+        self._build(scene, dt_s)
+
+    def _came(self, step: Step, place: float | None) -> None:
+        """Note where a step leads the base to: as the library says [units], or where it is put."""
+        if place is not None:
+            self._place, self.lag_m = place, max(self.lag_m, abs(place / self._unit - step.base_x))
+        elif self._way:
+            self._place = step.base_x * self._unit
+
+    @classmethod
+    def script(cls, scene: Scene, settings: Any, dt_s: float) -> Script:
+        """Return a scene as calls of the library; see `engines.run.export`."""
+        notes, own = Notes(cls.without), cls.library
+        library = own() if callable(own) else imported(own)
+        made = cls(scene, settings, dt_s, notes.of(library, cls.called))
+        notes.name_bodies(made.bodies)
+        said: Script = made._script(notes, made._way)
+        return said
+
+    def fault(self) -> str:
+        """Say which setting was not taken."""
+        if self._fault is None:
+            self._fault = str(self._read_back(self._scene))
+        return self._fault

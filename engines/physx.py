@@ -10,16 +10,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
-from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import NO_JAM, imported, returned, yaw_of
+from engines.parts import NO_JAM, Adapter, returned, yaw_of
 from engines.run.export import Notes, scaled
 from engines.scene import Scene
-from engines.settings import check, disagreement, given, setting
+from engines.settings import disagreement, given, setting
 from engines.shapes import Counted, counted, floor_half_size, half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Script, Step
+from engines.world import FloatArray, Script, Step
 
 MOST = 255
 """Iterations at most: the library counts them in eight bits."""
@@ -71,40 +69,32 @@ class PhysxSettings(Counted):
     floor: str = setting("target", names=("target", "belt", "position"))
     restitution: float = setting(0.1, least=0.0, most=1.0)  # of both; SAPIEN's own
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class PhysxWorld:
+class PhysxWorld(Adapter):
     """Bodies on a kinematic box, whether that moves or not."""
 
-    moment = Moment.MIDDLE
+    library = "sapien"
+    called = "sapien"
 
-    def __init__(
-        self, scene: Scene, settings: PhysxSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._sapien: Any = imported("sapien") if library is None else library
-        self._s, self._unit, self._sunk = settings, settings.unit_of(scene), settings.sunk_of(scene)
-        self._way = settings.floor if scene.frame == "world" else ""
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        settings = self._s
+        self._unit, self._sunk = settings.unit_of(scene), settings.sunk_of(scene)
         self._reflects, self._weight = settings.reflection, scene.system.gravity
-        self._dt = self._speed = self._place = self.lag_m = 0.0
         self._half = counted(half_size(scene.bodies[0]), self._unit)
-        self._state = np.zeros((len(scene.bodies), len(Pose._fields)))
-        wanted = self._set_library()
-        self.system = self._sapien.physx.PhysxCpuSystem()
-        self.stage = self._sapien.Scene([self.system])
+        self._wanted = self._set_library()
+        self.system = self._library.physx.PhysxCpuSystem()
+        self.stage = self._library.Scene([self.system])
         friction = float(settings.friction)
-        self.material = self._sapien.physx.PhysxMaterial(friction, friction, settings.restitution)
+        self.material = self._library.physx.PhysxMaterial(friction, friction, settings.restitution)
         self.base = self._new_base(scene)
         self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
-        self._fault = self._read_back(scene, *wanted) if library is None else ""
 
     def _set_library(self) -> tuple[dict[str, Any], ...]:
         """Set what the library has once for a process; return its settings of scene, body, shape.
 
         Its functions are told all settings together: what is not given is the default again.
         """
-        s, unit, physx = self._s, self._unit, self._sapien.physx
+        s, unit, physx = self._s, self._unit, self._library.physx
         bounce = None if s.bounce_threshold is None else s.bounce_threshold * unit
         sleep = None if s.sleeping in (None, True) else 0.0
         iterations = {
@@ -122,16 +112,16 @@ class PhysxWorld:
     def _new_base(self, scene: Scene) -> Any:
         x, y, z = floor_half_size(scene)
         half = counted((x, y, BASE_DEPTH * z), self._unit)
-        floor = self._sapien.physx.PhysxCollisionShapeBox(half, self.material)
-        floor.local_pose = self._sapien.Pose((0.0, 0.0, -half[2]))
-        base = self._sapien.physx.PhysxRigidDynamicComponent()
+        floor = self._library.physx.PhysxCollisionShapeBox(half, self.material)
+        floor.local_pose = self._library.Pose((0.0, 0.0, -half[2]))
+        base = self._library.physx.PhysxRigidDynamicComponent()
         base.attach(floor)
         base.kinematic = True
         self._place_at(base, (0.0, 0.0, -self._sunk))
         return base
 
     def _new_body(self, scene: Scene, number: int) -> Any:
-        s, unit, body, physx = self._s, self._unit, scene.bodies[number], self._sapien.physx
+        s, unit, body, physx = self._s, self._unit, scene.bodies[number], self._library.physx
         at, made = body.at, physx.PhysxRigidDynamicComponent()
         half = counted(half_size(body), unit)
         if s.geometry == "box":
@@ -142,13 +132,15 @@ class PhysxWorld:
             radius = CORNER * scene.bodies[0].height
             for corner in touching_spheres(scene, number, radius, planar=s.planar):
                 ball = physx.PhysxCollisionShapeSphere(radius * unit, self.material)
-                ball.local_pose = self._sapien.Pose(counted(corner, unit))
+                ball.local_pose = self._library.Pose(counted(corner, unit))
                 made.attach(ball)
             if scene.layout.rests(number):
                 made.attach(physx.PhysxCollisionShapeBox(half, self.material))
+        if s.geometry != "box" or not body.is_homogeneous:
             made.mass = body.mass
             made.inertia = tuple(moment * unit**2 for moment in body.inertia)
-            made.cmass_local_pose = self._sapien.Pose()
+            place = ((body.offset * unit, 0.0, 0.0),) if body.offset else ()
+            made.cmass_local_pose = self._library.Pose(*place)
         if s.angular_damping is not None:
             made.angular_damping = s.angular_damping
         if s.depenetration is not None:
@@ -158,14 +150,15 @@ class PhysxWorld:
         turn = (math.cos(0.5 * at.theta), 0.0, math.sin(0.5 * at.theta), 0.0)
         self._place_at(made, (at.x * unit, 0.0, at.z * unit - self._sunk), turn)
         if not at.at_rest:
-            made.linear_velocity = (at.velocity_x * unit, 0.0, at.velocity_z * unit)
+            mass_at = body.mass_at
+            made.linear_velocity = (mass_at.velocity_x * unit, 0.0, mass_at.velocity_z * unit)
             made.angular_velocity = (0.0, at.rate, 0.0)
         return made
 
     def _place_at(self, component: Any, *pose: Any) -> None:
-        entity = self._sapien.Entity()
+        entity = self._library.Entity()
         entity.add_component(component)
-        entity.pose = self._sapien.Pose(*pose)
+        entity.pose = self._library.Pose(*pose)
         self.stage.add_entity(entity)
 
     def step(self, step: Step) -> None:
@@ -180,11 +173,8 @@ class PhysxWorld:
             for body in self.bodies:
                 body.add_force_torque(pull, (0.0, 0.0, 0.0), "acceleration")
         self.system.step()
-        if self._way == "belt":
-            self._place = step.base_x * self._unit
-        elif self._way:
-            self._place = float(self.base.entity_pose.p[0])
-            self.lag_m = max(self.lag_m, abs(self._place / self._unit - step.base_x))
+        led = self._way not in ("", "belt")
+        self._came(step, float(self.base.entity_pose.p[0]) if led else None)
 
     @property
     def yaw(self) -> float | None:
@@ -204,7 +194,7 @@ class PhysxWorld:
     def fault(self) -> str:
         """Say which setting was not taken."""
         step = {"timestep": (self._dt or None, self.system.timestep)}
-        return self._fault or disagreement(step, Precision.SINGLE.value)
+        return super().fault() or disagreement(step, Precision.SINGLE.value)
 
     def close(self) -> None:
         """Release the engine's memory."""
@@ -226,7 +216,7 @@ class PhysxWorld:
         self.base.set_kinematic_target(self._at(place))
 
     def _at(self, x: float) -> Any:
-        return self._sapien.Pose((x, 0.0, -self._sunk))
+        return self._library.Pose((x, 0.0, -self._sunk))
 
     def _slip(self, side: float) -> float:
         """Return the velocity [units/s] at which the corner at a side slides on the base."""
@@ -234,12 +224,13 @@ class PhysxWorld:
         level = side * self._half[0] * math.sin(theta) + self._half[2] * math.cos(theta)
         return float(self.bodies[0].linear_velocity[0]) - rate * level - self._speed
 
-    def _read_back(self, scene: Scene, *wanted: dict[str, Any]) -> str:
+    def _read_back(self, scene: Scene) -> str:
         s, block = self._s, self.bodies[0]
         shape = block.collision_shapes[0]
+        places = self.system.config, block, shape
         pairs: dict[str, Any] = {
             name: (value, getattr(place, name))
-            for place, settings in zip((self.system.config, block, shape), wanted, strict=True)
+            for place, settings in zip(places, self._wanted, strict=True)
             for name, value in settings.items()
         }
         for number, (body, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
@@ -256,55 +247,42 @@ class PhysxWorld:
         }
         return disagreement(pairs, Precision.SINGLE.value)
 
-
-def script(scene: Scene, settings: PhysxSettings, dt_s: float) -> Script:
-    """Return a scene as calls of SAPIEN; see `engines.run.export`."""
-    notes, unit, weight = Notes(), settings.unit_of(scene), scene.system.gravity
-    world = PhysxWorld(scene, settings, dt_s, notes.of(imported("sapien"), "sapien"))
-    notes.name(system=world.system, stage=world.stage, material=world.material, floor=world.base)
-    notes.name_bodies(world.bodies)
-    floor = settings.floor if scene.frame == "world" else ""
-    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
-    far = "0.0, floor.entity_pose.p[2]]))"
-    moves = {
-        "": [],
-        "belt": [
-            f"floor.entity.pose = sapien.Pose([-DT * {velocity}, {far[:-1]}",
-            f"floor.set_kinematic_target(sapien.Pose([0.0, {far}",
-        ],
-        "target": [f"floor.set_kinematic_target(sapien.Pose([{x}, {far}"],
-        "position": [f"floor.entity.pose = sapien.Pose([{x}, {far[:-1]}"],
-    }
-    under = {"": "", "belt": f" - {x}"}.get(floor, " - float(floor.entity_pose.p[0])")
-    pull = ", 0.0, ".join(scaled(axis, unit) for axis in ("pull_x", f"(pull_z + {weight!r})"))
-    words = (
-        "_config(",
-        "Material(",
-        "damping",
-        "depenetration",
-        "locked_motion",
-        "Sphere",
-        "block.inertia",
-    )
-    return Script(
-        imports=("import sapien",),
-        settings=notes.quoted(*words),
-        build=(*notes.lines(), "system.timestep = DT"),
-        step=(
-            f"pull = {pull}",
-            f"if abs(pull_x) + abs(pull_z + {weight!r}) > {NOTHING * weight!r}:",
-            "    for body in bodies:",
-            "        body.add_force_torque(pull, (0.0, 0.0, 0.0), 'acceleration')",
-            *moves[floor],
-            "system.step()",
-        ),
-        pose=(
-            "turn = bodies[number].entity_pose.q",
-            "theta = 2.0 * math.atan2(turn[2], turn[0])",
-            "rate = float(bodies[number].angular_velocity[1])",
-        ),
-        place=f"(float(bodies[0].entity_pose.p[0]){under}) / {unit!r}",
-    )
+    def _script(self, notes: Notes, way: str) -> Script:
+        unit, weight = self._unit, self._weight
+        notes.name(system=self.system, stage=self.stage, material=self.material, floor=self.base)
+        x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+        far = "0.0, floor.entity_pose.p[2]]))"
+        moves = {
+            "": [],
+            "belt": [
+                f"floor.entity.pose = sapien.Pose([-DT * {velocity}, {far[:-1]}",
+                f"floor.set_kinematic_target(sapien.Pose([0.0, {far}",
+            ],
+            "target": [f"floor.set_kinematic_target(sapien.Pose([{x}, {far}"],
+            "position": [f"floor.entity.pose = sapien.Pose([{x}, {far[:-1]}"],
+        }
+        under = {"": "", "belt": f" - {x}"}.get(way, " - float(floor.entity_pose.p[0])")
+        pull = ", 0.0, ".join(scaled(axis, unit) for axis in ("pull_x", f"(pull_z + {weight!r})"))
+        words = "_config( Material( damping depenetration locked_motion Sphere block.inertia"
+        return Script(
+            imports=("import sapien",),
+            settings=notes.quoted(*words.split()),
+            build=(*notes.lines(), "system.timestep = DT"),
+            step=(
+                f"pull = {pull}",
+                f"if abs(pull_x) + abs(pull_z + {weight!r}) > {NOTHING * weight!r}:",
+                "    for body in bodies:",
+                "        body.add_force_torque(pull, (0.0, 0.0, 0.0), 'acceleration')",
+                *moves[way],
+                "system.step()",
+            ),
+            pose=(
+                "turn = bodies[number].entity_pose.q",
+                "theta = 2.0 * math.atan2(turn[2], turn[0])",
+                "rate = float(bodies[number].angular_velocity[1])",
+            ),
+            place=f"(float(bodies[0].entity_pose.p[0]){under}) / {unit!r}",
+        )
 
 
 TUNED = PhysxSettings(
@@ -330,45 +308,38 @@ LANDING = replace(TUNED, **EVERY, contact_offset=None, reflection=True, floor="b
 SHAPES = "SAPIEN 3.0.3, sapien/pysapien/physx.pyi"
 TUNING = "Isaac Lab 3.0.0, concepts/solver-tuning/tune_physx.rst"
 
-DOCUMENTED = (
-    Citation("step", "1/100 s", "SAPIEN 3.0.3, sapien/example/hello_world.py"),
-    Citation(
-        "iterations", "10 of position, 1 of velocity, by default", f"{SHAPES}: set_body_config"
-    ),
-    Citation("solver", "enable_tgs = True, the default", f"{SHAPES}: set_scene_config"),
-    Citation("bounce_threshold", "2.0, the default", f"{SHAPES}: set_scene_config"),
-    Citation("sleeping", "sleep_threshold = 0.005, the default", f"{SHAPES}: set_body_config"),
-    Citation("contact_offset", "0.01, the default", f"{SHAPES}: set_shape_config"),
-    Citation("contact_offset", "rest_offset 0, the default", f"{SHAPES}: set_shape_config"),
-    Citation("manifolds", "enable_pcm = True, the default", f"{SHAPES}: set_scene_config"),
-    Citation("damping", "angular 0.05, linear 0", f"{SHAPES}: PhysxRigidDynamicComponent"),
-    Citation("restitution", "0.1, the default", "physx.get_default_material()"),
-    Citation("friction", "0.3, of a pair the mean; here 1", "physx.get_default_material()"),
-    Citation(
-        "without effect",
-        "enable_friction_every_iteration, no enable_ccd, max_angular_velocity 100, "
-        "max_depenetration_velocity 1e32",
-        f"{SHAPES}: PhysxSceneConfig, PhysxRigidDynamicComponent",
-    ),
-    Citation("floor", "kinematic, set_kinematic_target", f"{SHAPES}: PhysxRigidDynamicComponent"),
-)
+DOCUMENTED = citations(f"""
+step | 1/100 s | SAPIEN 3.0.3, sapien/example/hello_world.py
+iterations | 10 of position, 1 of velocity, by default | {SHAPES}: set_body_config
+solver | enable_tgs = True, the default | {SHAPES}: set_scene_config
+bounce_threshold | 2.0, the default | {SHAPES}: set_scene_config
+sleeping | sleep_threshold = 0.005, the default | {SHAPES}: set_body_config
+contact_offset | 0.01, the default | {SHAPES}: set_shape_config
+contact_offset | rest_offset 0, the default | {SHAPES}: set_shape_config
+manifolds | enable_pcm = True, the default | {SHAPES}: set_scene_config
+damping | angular 0.05, linear 0 | {SHAPES}: PhysxRigidDynamicComponent
+restitution | 0.1, the default | physx.get_default_material()
+friction | 0.3, of a pair the mean; here 1 | physx.get_default_material()
+without effect | enable_friction_every_iteration, no enable_ccd, max_angular_velocity 100,
+    max_depenetration_velocity 1e32 | {SHAPES}: PhysxSceneConfig, PhysxRigidDynamicComponent
+floor | kinematic, set_kinematic_target | {SHAPES}: PhysxRigidDynamicComponent
+""")
 """What its documentation sets."""
 
-RECOMMENDED = (
-    Citation("step", "dt = 1/120 s, where to start: 'not a universal recommendation'", TUNING),
-    Citation("iterations", "at most 64 of position and 4 of velocity: all of them here", TUNING),
-    Citation("solver", "TGS, the first candidate", TUNING),
-    Citation("bounce_threshold", "0.2 m/s", TUNING),
-)
-"""What those who maintain PhysX recommend for contact."""
+RECOMMENDED = citations(f"""
+step | dt = 1/120 s, where to start: 'not a universal recommendation' | {TUNING}
+iterations | at most 64 of position and 4 of velocity: all of them here | {TUNING}
+solver | TGS, the first candidate | {TUNING}
+bounce_threshold | 0.2 m/s | {TUNING}
+""")
 
-PASTED = (
-    Citation("solver", "PGS", "measured here"),
-    Citation("iterations", "50 of position", "measured here"),
-    Citation("contact_offset", "1e-4: of 0.01 a corner is held before it strikes", "measured here"),
-    Citation("shapes", "four balls at the lower corners, the body's own inertia", "measured here"),
-    Citation("damping, restitution, sleeping", "none", "measured here"),
-)
+PASTED = citations("""
+solver | PGS | measured here
+iterations | 50 of position | measured here
+contact_offset | 1e-4: of 0.01 a corner is held before it strikes | measured here
+shapes | four balls at the lower corners, the body's own inertia | measured here
+damping, restitution, sleeping | none | measured here
+""")
 
 STUCK = "of a slow move nothing is left in single precision: TGS adds it to the place in parts"
 SMOOTH = "SAPIEN's own friction: the block slides before it rocks"
@@ -393,16 +364,8 @@ FACTORS = (
     factor("friction", level("0.3, SAPIEN's own", (DEFAULT,), SMOOTH, friction=0.3)),
     moving_base("target", "belt", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default",
-    settings=PhysxSettings(),
-    step_s=0.01,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.3},
-)
+NAIVE = default(PhysxSettings(), 0.01, DOCUMENTED, friction=0.3)
 
 ENGINE = Engine(
     name="physx",
@@ -410,6 +373,7 @@ ENGINE = Engine(
     library="sapien",
     build=PhysxWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),
@@ -432,16 +396,14 @@ ENGINE = Engine(
             sleeping=False,
         ),
         Preset(name="tuned", settings=TUNED, step=1e-3),
-        Preset(
-            name="landing",
-            settings=LANDING,
-            stepping=Stepping.LANDING,
+        landing(
+            LANDING,
+            {Help.REFLECTION: {"reflection": False}},
             stacked=None,
-            helped_by={Help.STEPS: None, Help.REFLECTION: {"reflection": False}},
         ),
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,
-    script=script,
+    script=PhysxWorld.script,
     factors=FACTORS,
 )

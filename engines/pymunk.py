@@ -10,16 +10,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
-from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import factor, level, moving_base
-from engines.parts import NO_JAM, fall, imported, iterations_for, returned
+from engines.parts import NO_JAM, Adapter, fall, iterations_for, returned
 from engines.run.export import Notes, constant, scaled
 from engines.scene import BASE, Body, Scene
-from engines.settings import check, disagreement, setting
+from engines.settings import Settings, disagreement, setting
 from engines.shapes import floor_reach
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
+from engines.world import ContactPhase, FloatArray, Moment, Script, Step
 
 UNIT_S = 1e-3
 """Step [s] that the library is told where the positions are not its own to move."""
@@ -30,7 +28,7 @@ free corner would come to rest above the base."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PymunkSettings:
+class PymunkSettings(Settings):
     """Settings of pymunk; None leaves the library's default."""
 
     # one polygon on one segment, or points at the corners, each on a polygon of its own
@@ -52,25 +50,20 @@ class PymunkSettings:
     restitution: float = setting(0.0, least=0.0, most=1.0)
     base_restitution: float = setting(1.0, least=0.0, most=1.0)
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class PymunkWorld:
+class PymunkWorld(Adapter):
     """Bodies on one that does not move by itself, in a `pymunk.Space`."""
 
-    def __init__(
-        self, scene: Scene, settings: PymunkSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._pymunk: Any = imported("pymunk") if library is None else library
-        self.settings, self._unit = settings, settings.unit
+    library = "pymunk"
+    called = "pymunk"
+
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        settings, self._unit = self._s, self._s.unit
         self.moment = Moment.MIDDLE if settings.positions else Moment.NEXT
-        self._floor = settings.floor if scene.frame == "world" else ""
-        self._dt = self._under = self.lag_m = 0.0
         self.margin = (settings.margin or 0.0) * fall(scene, dt_s) * self._unit
         # free corners of bodies that rest on others must meet them together
         self._together = settings.positions and scene.stacked
-        self.space, slop = self._pymunk.Space(), settings.slop
+        self.space, slop = self._library.Space(), settings.slop
         self._wanted = {
             "iterations": iterations_for(scene, settings.iterations, settings.sweeps),
             "collision_slop": slop if settings.margin is None else 10.0 * self.margin,
@@ -79,7 +72,7 @@ class PymunkWorld:
         for name, value in self._wanted.items():
             if value is not None:
                 setattr(self.space, name, value)
-        self.base = self._pymunk.Body(body_type=self._pymunk.Body.KINEMATIC)
+        self.base = self._library.Body(body_type=self._library.Body.KINEMATIC)
         self.bodies = [self._new_body(body) for body in scene.bodies]
         self.pivots: list[float] = []
         self._at: list[tuple[float, float]] = []
@@ -89,27 +82,28 @@ class PymunkWorld:
         for shape in (*self.corners, *self.floors):
             shape.friction = constant(root, f"math.sqrt({float(settings.friction)!r})")
         self.space.add(self.base, *self.bodies, *self.corners, *self.floors)
-        if self._floor not in ("", "velocity"):
+        if self._way not in ("", "velocity"):
             self.base.position_func = stay
         for body in self.bodies if settings.positions else ():
             body.position_func = stay
-        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
-        self._fault = self._read_back(scene)
 
     def _new_body(self, body: Body) -> Any:
         unit, at = self._unit, body.at
-        made = self._pymunk.Body(body.mass, body.inertia[1] * unit**2)
-        made.position, made.angle = (at.x * unit, at.z * unit), -at.theta
+        made = self._library.Body(body.mass, body.inertia[1] * unit**2)
+        made.angle, mass_at = -at.theta, body.mass_at
+        if body.offset:
+            made.center_of_gravity = (body.offset * unit, 0.0)
+        made.position = (at.x * unit, at.z * unit)
         if not at.at_rest:
-            made.velocity = (at.velocity_x * unit, at.velocity_z * unit)
+            made.velocity = (mass_at.velocity_x * unit, mass_at.velocity_z * unit)
             made.angular_velocity = -at.rate
         return made
 
     def _boxes(self, scene: Scene) -> tuple[list[Any], list[Any]]:
         far = floor_reach(scene) * self._unit
         pairs = zip(self.bodies, scene.bodies, strict=True)
-        boxes = [self._pymunk.Poly(made, boxed(body, self._unit)) for made, body in pairs]
-        return boxes, [self._pymunk.Segment(self.base, (-far, 0.0), (far, 0.0), 0.0)]
+        boxes = [self._library.Poly(made, boxed(body, self._unit)) for made, body in pairs]
+        return boxes, [self._library.Segment(self.base, (-far, 0.0), (far, 0.0), 0.0)]
 
     def _corners(self, scene: Scene) -> tuple[list[Any], list[Any]]:
         """Make the corners, and a floor for each, which meets that corner alone."""
@@ -126,39 +120,39 @@ class PymunkWorld:
             widest = 2.0 * self.margin if self._together else self.margin
             for side in (1.0, -1.0):
                 under, one = self.base if on == BASE else self.bodies[on], 1 << len(corners)
-                corners.append(self._pymunk.Circle(self.bodies[number], 0.0, (-side * x, z)))
-                floors.append(self._pymunk.Poly(under, ground, radius=widest))
+                corners.append(self._library.Circle(self.bodies[number], 0.0, (-side * x, z)))
+                floors.append(self._library.Poly(under, ground, radius=widest))
                 for shape in (corners[-1], floors[-1]):
-                    shape.filter = self._pymunk.ShapeFilter(categories=one, mask=one)
+                    shape.filter = self._library.ShapeFilter(categories=one, mask=one)
                 self.pivots.append(face * side)
                 self._at.append((-side * x, z))
         return corners, floors
 
     def step(self, step: Step) -> None:
         """Advance by a step."""
-        own, unit = self.settings.positions, self._unit
+        own, unit = self._s.positions, self._unit
         dt = UNIT_S if own else step.dt_s
         pull = unit * step.dt_s / dt
         self.space.gravity = (step.pull_x * pull, step.pull_z * pull)
         if self.pivots:
             self._hold(step)
-        if self._floor == "velocity":
-            self._under = self.base.position.x
-            self.base.velocity = ((step.base_x * unit - self._under) / step.dt_s, 0.0)
-        elif self._floor == "both":
+        if self._way == "velocity":
+            self._place = self.base.position.x
+            self.base.velocity = ((step.base_x * unit - self._place) / step.dt_s, 0.0)
+        elif self._way == "both":
             self.base.velocity = (step.base_velocity * unit, 0.0)
         self.space.step(dt)
-        if self._floor == "velocity":
+        if self._way == "velocity":
             self.lag_m = max(self.lag_m, abs(self.base.position.x / unit - step.base_x))
-        elif self._floor:
-            self._under = step.base_x * unit
-            self.base.position = (self._under, 0.0)
+        elif self._way:
+            self._place = step.base_x * unit
+            self.base.position = (self._place, 0.0)
         for body in self.bodies if own else ():
-            self._pymunk.Body.update_position(body, step.dt_s)
+            self._library.Body.update_position(body, step.dt_s)
 
     def _hold(self, step: Step) -> None:
         """Keep the pivot in contact, and give its velocity back while the block turns about it."""
-        s, before, self._dt = self.settings, self._dt, step.dt_s
+        s, before, self._dt = self._s, self._dt, step.dt_s
         back = returned(step, before) if s.reflection else 0.0
         bounce = s.restitution * s.base_restitution
         # equal steps do not say about which corner
@@ -179,15 +173,11 @@ class PymunkWorld:
 
     def state(self) -> FloatArray:
         """Read the poses back; a base that the library moves is a step ahead, and carries then."""
-        unit, under = self._unit, self._under
+        unit, under = self._unit, self._place
         for number, body in enumerate(self.bodies):
             x, z = body.position
             self._state[number] = (x - under) / unit, z / unit, -body.angle, -body.angular_velocity
         return self._state
-
-    def fault(self) -> str:
-        """Say which setting was not taken."""
-        return self._fault
 
     def close(self) -> None:
         """Release the engine's memory."""
@@ -195,13 +185,53 @@ class PymunkWorld:
 
     def _read_back(self, scene: Scene) -> str:
         friction = self.corners[0].friction * self.floors[0].friction
-        pairs: dict[str, Any] = {"friction": (self.settings.friction, friction)}
+        pairs: dict[str, Any] = {"friction": (self._s.friction, friction)}
         for name, value in self._wanted.items():
             pairs[name] = value, getattr(self.space, name)
         for number, (wanted, found) in enumerate(zip(scene.bodies, self.bodies, strict=True)):
             pairs[f"mass {number}"] = wanted.mass, found.mass
             pairs[f"moment {number}"] = wanted.inertia[1] * self._unit**2, found.moment
         return disagreement(pairs)
+
+    def _script(self, notes: Notes, way: str) -> Script:
+        unit = self._unit
+        notes.name(space=self.space, base=self.base, floor=self.floors)
+        notes.name(**{"box" if self._s.geometry == "box" else "corner": self.corners})
+        hold = []
+        x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+        if self.margin:  # the corner about which the block turns is kept in contact
+            notes.listed(floors=self.floors)
+            held = f"{self.margin!r} if -side * bodies[0].angle >= {-LEVEL!r} else 0.0"
+            hold.append(f"for side, floor in zip({self.pivots}, floors):")
+            hold.append(f"    floor.unsafe_set_radius({held})")
+        moves = {"velocity": f"({x} - base.position.x) / DT", "both": velocity}
+        under = " - base.position.x" * bool(way)
+        if way == "velocity":  # a base that the library moves is a step ahead
+            under += " + DT * base.velocity.x"
+        place = f"bodies[0].position.x{under}"
+        return Script(
+            imports=(
+                "import pymunk",
+                *("stay = lambda body, dt: None",) * (way not in ("", "velocity")),
+            ),
+            settings=(
+                f"space.step({self._ordinary!r})",
+                *notes.quoted(
+                    "iterations", "collision_", ".Circle(", ".Poly(", ".filter", ".friction"
+                ),
+            ),
+            build=notes.lines(),
+            step=(
+                *hold,
+                *(f"base.velocity = {moves[each]}, 0.0" for each in moves if each == way),
+                f"space.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
+                "space.step(DT)",
+                *(f"base.position = {x}, 0.0",) * (way not in ("", "velocity")),
+            ),
+            pose=("theta, rate = -bodies[number].angle, -bodies[number].angular_velocity",),
+            place=place if unit == 1.0 else f"({place}) / {unit!r}",
+            moment=self.moment,
+        )
 
 
 def boxed(body: Body, unit: float, deeper: float = 0.0) -> list[tuple[float, float]]:
@@ -214,82 +244,30 @@ def stay(body: Any, dt: float) -> None:
     """Leave a body where it is: the adapter moves it."""
 
 
-def script(scene: Scene, settings: PymunkSettings, dt_s: float) -> Script:
-    """Return a scene as calls of pymunk; see `engines.run.export`."""
-    notes, unit = Notes(), settings.unit
-    world = PymunkWorld(scene, settings, dt_s, notes.of(imported("pymunk"), "pymunk"))
-    notes.name(space=world.space, base=world.base, floor=world.floors)
-    notes.name(**{"box" if settings.geometry == "box" else "corner": world.corners})
-    notes.name_bodies(world.bodies)
-    hold, floor = [], settings.floor if scene.frame == "world" else ""
-    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
-    if world.margin:  # the corner about which the block turns is kept in contact
-        notes.listed(floors=world.floors)
-        held = f"{world.margin!r} if -side * bodies[0].angle >= {-LEVEL!r} else 0.0"
-        hold.append(f"for side, floor in zip({world.pivots}, floors):")
-        hold.append(f"    floor.unsafe_set_radius({held})")
-    moves = {"velocity": f"({x} - base.position.x) / DT", "both": velocity}
-    under = " - base.position.x" * bool(floor)
-    if floor == "velocity":  # a base that the library moves is a step ahead
-        under += " + DT * base.velocity.x"
-    place = f"bodies[0].position.x{under}"
-    return Script(
-        imports=(
-            "import pymunk",
-            *("stay = lambda body, dt: None",) * (floor not in ("", "velocity")),
-        ),
-        settings=(
-            f"space.step({dt_s!r})",
-            *notes.quoted("iterations", "collision_", ".Circle(", ".Poly(", ".filter", ".friction"),
-        ),
-        build=notes.lines(),
-        step=(
-            *hold,
-            *(f"base.velocity = {moves[way]}, 0.0" for way in moves if way == floor),
-            f"space.gravity = {scaled('pull_x', unit)}, {scaled('pull_z', unit)}",
-            "space.step(DT)",
-            *(f"base.position = {x}, 0.0",) * (floor not in ("", "velocity")),
-        ),
-        pose=("theta, rate = -bodies[number].angle, -bodies[number].angular_velocity",),
-        place=place if unit == 1.0 else f"({place}) / {unit!r}",
-        moment=world.moment,
-    )
-
-
 TUNED = PymunkSettings(
     geometry="corners", friction=NO_JAM, sweeps=20.0, bias=0.0, margin=10.0, floor="both"
 )
 
-DOCUMENTED = (
-    Citation("step", "space.step(0.02)", "README, the first example"),
-    Citation("iterations", "10, the default", "Space.iterations"),
-    Citation("collision_slop", "0.1, the default", "Space.collision_slop"),
-    Citation("sleeping", "off: sleep_time_threshold is inf", "Space.sleep_time_threshold"),
-    Citation("friction", "0, of a pair the product; here 1", "Shape.friction, cpArbiter.c"),
-    Citation("warm starting", "all of the last step's impulses", "cpSpaceStep.c"),
-    Citation(
-        "collision_persistence",
-        "3 steps; with 0 nothing is left to start from, and a block slides",
-        "cpSpace.c",
-    ),
-    Citation(
-        "without effect",
-        "collision_bias 0.9^60 a second, of what exceeds the slop; damping 1; elasticity 0",
-        "cpSpace.c, cpShape.c",
-    ),
-    Citation("floor", "Body.KINEMATIC, by its velocity", "Body.KINEMATIC, on platforms"),
-)
+DOCUMENTED = citations("""
+step | space.step(0.02) | README, the first example
+iterations | 10, the default | Space.iterations
+collision_slop | 0.1, the default | Space.collision_slop
+sleeping | off: sleep_time_threshold is inf | Space.sleep_time_threshold
+friction | 0, of a pair the product; here 1 | Shape.friction, cpArbiter.c
+warm starting | all of the last step's impulses | cpSpaceStep.c
+collision_persistence | 3 steps; with 0 nothing is left to start from, and a block slides |
+    cpSpace.c
+without effect | collision_bias 0.9^60 a second, of what exceeds the slop; damping 1; elasticity 0
+    | cpSpace.c, cpShape.c
+floor | Body.KINEMATIC, by its velocity | Body.KINEMATIC, on platforms
+""")
 """What its documentation sets, in pymunk 7.3.1."""
 
-RECOMMENDED = (
-    Citation("step", "0.002 s, a tenth of 0.02", "Space.step: multiple calls with a smaller dt"),
-    Citation(
-        "collision_slop",
-        "as high as you can without noticeable overlapping: here 1 mm",
-        "Space.collision_slop",
-    ),
-)
-"""What it recommends for stable and accurate contact."""
+RECOMMENDED = citations("""
+step | 0.002 s, a tenth of 0.02 | Space.step: multiple calls with a smaller dt
+collision_slop | as high as you can without noticeable overlapping: here 1 mm |
+    Space.collision_slop
+""")
 
 FACTORS = (
     factor("geometry"),
@@ -303,14 +281,7 @@ FACTORS = (
     moving_base("both", "velocity", "position"),
 )
 
-NAIVE = Preset(
-    name="default",
-    settings=PymunkSettings(),
-    step_s=0.02,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.0},
-)
+NAIVE = default(PymunkSettings(), 0.02, DOCUMENTED, friction=0.0)
 
 ENGINE = Engine(
     name="pymunk",
@@ -318,6 +289,7 @@ ENGINE = Engine(
     library="pymunk",
     build=PymunkWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),
@@ -325,19 +297,16 @@ ENGINE = Engine(
         Preset(
             name="tuned", settings=TUNED, step=2.5e-4, helped_by={Help.MARGIN: {"margin": None}}
         ),
-        Preset(
-            name="landing",
-            settings=replace(TUNED, positions=True, reflection=True),
-            stepping=Stepping.LANDING,
-            stacked={"sweeps": 400.0},  # the heavier what rests on others, the slower they converge
-            helped_by={
-                Help.STEPS: None,
+        landing(
+            replace(TUNED, positions=True, reflection=True),
+            {
                 Help.POSITIONS: {"positions": False},
                 Help.REFLECTION: {"reflection": False},
                 Help.MARGIN: {"margin": None},
             },
+            stacked={"sweeps": 400.0},  # the heavier what rests on others, the slower they converge
         ),
     ),
-    script=script,
+    script=PymunkWorld.script,
     factors=FACTORS,
 )

@@ -10,16 +10,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
-from engines.declaration import Citation, Engine, Help, Precision, Preset, Stepping
+from engines.declaration import Engine, Help, Precision, Preset, citations, default, landing
 from engines.factors import ASLEEP, BOTH, DEFAULT, factor, level, moving_base
-from engines.parts import NO_JAM, imported, iterations_for, returned, yaw_of
+from engines.parts import NO_JAM, Adapter, iterations_for, returned, yaw_of
 from engines.run.export import Notes, scaled
 from engines.scene import Scene
-from engines.settings import check, disagreement, given, one_of, setting
+from engines.settings import disagreement, given, one_of, setting
 from engines.shapes import Counted, counted, floor_half_size, half_size, touching_spheres
-from engines.world import FloatArray, Moment, Pose, Script, Step
+from engines.world import FloatArray, Script, Step
 
 OVERDAMPED = 1e5
 """Damping ratio of a contact that corrects positions and is firm all the same."""
@@ -81,35 +79,27 @@ class RapierSettings(Counted):
     restitution: float = setting(0.0, least=0.0, most=1.0)
     base_restitution: float | None = setting(least=0.0, most=1.0)  # the block's by default
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class RapierWorld:
+class RapierWorld(Adapter):
     """Bodies on a kinematic box, whether that moves or not."""
 
-    moment = Moment.MIDDLE
+    library = "rapier3d"
+    called = "rapier"
 
-    def __init__(
-        self, scene: Scene, settings: RapierSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._rapier: Any = imported("rapier3d") if library is None else library
-        self._s, self._alpha = settings, scene.system.alpha
-        self._way = settings.floor if scene.frame == "world" else ""
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        s = self._s
         self._led = self._way in ("target", "velocity")
-        self._driven = bool(self._way) or settings.reflection
-        self._dt = self._speed = self._place = self.lag_m = 0.0
-        self._unit, self._sunk = settings.unit_of(scene), settings.sunk_of(scene)
+        self._driven = bool(self._way) or s.reflection
+        self._unit, self._sunk = s.unit_of(scene), s.sunk_of(scene)
         self._half = counted(half_size(scene.bodies[0]), self._unit)
-        self._iterations = iterations_for(scene, settings.iterations, settings.sweeps)
-        self.world = self._rapier.PhysicsWorld()
+        self._iterations = iterations_for(scene, s.iterations, s.sweeps)
+        self.world = self._library.PhysicsWorld()
         self.parameters = self.world.integration_parameters
         self.named: dict[str, list[Any]] = {"softness": [], "ball": []}  # as a script calls them
         self._set_solver(dt_s)
         self.base = self._new_base(scene)
         self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
-        self._body, self._state = self.bodies[0], np.zeros((len(self.bodies), len(Pose._fields)))
-        self._fault = self._read_back(scene) if library is None else ""
+        self._body = self.bodies[0]
 
     def _set_solver(self, dt_s: float) -> None:
         s = self._s
@@ -125,22 +115,22 @@ class RapierWorld:
         for name, value in given(settings).items():
             setattr(self.parameters, name, value)
         if s.coulomb is not None:
-            self.parameters.friction_model = self._rapier.FrictionModel.COULOMB
+            self.parameters.friction_model = self._library.FrictionModel.COULOMB
         spring = s.frequency, s.damping_ratio
         if s.correction is not None:
             # a spring of frequency f and damping ratio z takes the part dt / (dt + z / (pi f)) of a
             # depth out of it in a step dt
             spring = OVERDAMPED / (math.pi * s.correction * dt_s), OVERDAMPED
         if spring[0] is not None:
-            soft = self._rapier.SpringCoefficients(*spring)
+            soft = self._library.SpringCoefficients(*spring)
             self.parameters.contact_softness = self.parameters.static_contact_softness = soft
             self.named["softness"].append(soft)
 
     def _new_base(self, scene: Scene) -> Any:
-        s, kind = self._s, self._rapier.RigidBody
+        s, kind = self._s, self._library.RigidBody
         x, y, z = floor_half_size(scene)
         x, y, z = counted((x, y, s.base_depth * z), self._unit)
-        floor = self._rapier.Collider.cuboid(x, y, z).translation((0.0, 0.0, -z))
+        floor = self._library.Collider.cuboid(x, y, z).translation((0.0, 0.0, -z))
         restitution = s.restitution if s.base_restitution is None else s.base_restitution
         floor = floor.friction(float(s.friction)).restitution(restitution)
         targeted = self._way == "target"
@@ -150,7 +140,7 @@ class RapierWorld:
 
     def _new_body(self, scene: Scene, number: int) -> Any:
         s, unit, body = self._s, self._unit, scene.bodies[number]
-        at, collider, corners = body.at, self._rapier.Collider, s.geometry == "corners"
+        at, collider, corners = body.at, self._library.Collider, s.geometry == "corners"
         half = counted(half_size(body), unit)
         if corners:
             radius = s.corner_radius * scene.bodies[0].height
@@ -161,22 +151,24 @@ class RapierWorld:
             if scene.layout.rests(number):
                 shapes.append(collider.cuboid(*half).density(0.0))
         else:
-            shapes = [collider.cuboid(*half).density(body.density / unit**3)]
+            dense = body.density / unit**3 if body.is_homogeneous else 0.0
+            shapes = [collider.cuboid(*half).density(dense)]
         friction = float(s.friction)  # the mean of two counts
         shapes = [shape.friction(friction).restitution(s.restitution) for shape in shapes]
-        made = self._rapier.RigidBody.dynamic()
+        made = self._library.RigidBody.dynamic()
         made = made.translation((at.x * unit, 0.0, at.z * unit - self._sunk))
         if not at.at_rest:
-            velocity = (at.velocity_x * unit, 0.0, at.velocity_z * unit)
+            mass_at = body.mass_at
+            velocity = (mass_at.velocity_x * unit, 0.0, mass_at.velocity_z * unit)
             made = made.rotation((0.0, at.theta, 0.0)).linvel(velocity).angvel((0.0, at.rate, 0.0))
         if s.planar:
             made = made.enabled_rotations((False, True, False))
             made = made.enabled_translations((True, not s.locked_aside, True))
         if s.sleeping is not None:
             made = made.can_sleep(s.sleeping)
-        if corners:
+        if corners or not body.is_homogeneous:
             inertia = tuple(moment * unit**2 for moment in body.inertia)
-            mass = self._rapier.MassProperties((0.0, 0.0, 0.0), body.mass, inertia)
+            mass = self._library.MassProperties((body.offset * unit, 0.0, 0.0), body.mass, inertia)
             made = made.additional_mass_properties(mass)
         block = self.world.rigid_bodies[self.world.add_body(made, shapes)]
         block.recompute_mass_properties_from_colliders(self.world.colliders)  # else a step late
@@ -196,11 +188,7 @@ class RapierWorld:
             self._drive(step)
         self.world.step()
         self._dt = step.dt_s
-        if self._led:
-            self._place = self.base.translation.x
-            self.lag_m = max(self.lag_m, abs(self._place / self._unit - step.base_x))
-        elif self._way:
-            self._place = step.base_x * self._unit
+        self._came(step, self.base.translation.x if self._led else None)
 
     @property
     def yaw(self) -> float | None:
@@ -219,10 +207,10 @@ class RapierWorld:
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the block sleeps where none can rest."""
-        if self._body.is_sleeping and abs(self.state()[0, 2]) > ALOFT * self._alpha:
+        if self._body.is_sleeping and abs(self.state()[0, 2]) > ALOFT * self._scene.system.alpha:
             return "the library put the block to sleep aloft"
         step = {"dt": (self._dt or None, self.parameters.dt)}
-        return self._fault or disagreement(step, Precision.SINGLE.value)
+        return super().fault() or disagreement(step, Precision.SINGLE.value)
 
     def close(self) -> None:
         """Release the engine's memory."""
@@ -253,44 +241,39 @@ class RapierWorld:
             pairs[f"mass {number}"] = (body.mass, self.bodies[number].mass)
         return disagreement(pairs, Precision.SINGLE.value)
 
-
-def script(scene: Scene, settings: RapierSettings, dt_s: float) -> Script:
-    """Return a scene as calls of Rapier; see `engines.run.export`."""
-    notes, unit = Notes(), settings.unit_of(scene)
-    world = RapierWorld(scene, settings, dt_s, notes.of(imported("rapier3d"), "rapier"))
-    notes.name(world=world.world, floor=world.base, **world.named)
-    notes.name_bodies(world.bodies)
-    floor = settings.floor if scene.frame == "world" else ""
-    x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
-    moves = {
-        "target": [f"floor.set_next_kinematic_translation(({x}, 0.0, floor.translation.z))"],
-        "velocity": [f"floor.linvel = ({x} - floor.translation.x) / DT, 0.0, 0.0"],
-        "both": [
-            f"floor.translation = {x} - DT * {velocity}, 0.0, floor.translation.z",
-            f"floor.linvel = {velocity}, 0.0, 0.0",
-        ],
-        "": [],
-    }
-    one_of("floor of a script", floor, tuple(moves))
-    under = {"": "", "both": f" - {x}"}.get(floor, " - floor.translation.x")
-    return Script(
-        imports=("import rapier3d as rapier",),
-        settings=(
-            f"world.integration_parameters.dt = {dt_s!r}",
-            *notes.quoted("parameters.", "Spring", ".friction(", "can_sleep", "enabled_"),
-        ),
-        build=(*notes.lines(), "world.integration_parameters.dt = DT"),
-        step=(
-            f"world.gravity = {scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}",
-            *moves[floor],
-            "world.step()",
-        ),
-        pose=(
-            "turn = bodies[number].rotation",
-            "theta, rate = 2.0 * math.atan2(turn.j, turn.w), bodies[number].angvel.y",
-        ),
-        place=f"(bodies[0].translation.x{under}) / {unit!r}",
-    )
+    def _script(self, notes: Notes, way: str) -> Script:
+        unit = self._unit
+        notes.name(world=self.world, floor=self.base, **self.named)
+        x, velocity = scaled("base_x", unit), scaled("base_velocity", unit)
+        moves = {
+            "target": [f"floor.set_next_kinematic_translation(({x}, 0.0, floor.translation.z))"],
+            "velocity": [f"floor.linvel = ({x} - floor.translation.x) / DT, 0.0, 0.0"],
+            "both": [
+                f"floor.translation = {x} - DT * {velocity}, 0.0, floor.translation.z",
+                f"floor.linvel = {velocity}, 0.0, 0.0",
+            ],
+            "": [],
+        }
+        one_of("floor of a script", way, tuple(moves))
+        under = {"": "", "both": f" - {x}"}.get(way, " - floor.translation.x")
+        return Script(
+            imports=("import rapier3d as rapier",),
+            settings=(
+                f"world.integration_parameters.dt = {self._ordinary!r}",
+                *notes.quoted("parameters.", "Spring", ".friction(", "can_sleep", "enabled_"),
+            ),
+            build=(*notes.lines(), "world.integration_parameters.dt = DT"),
+            step=(
+                f"world.gravity = {scaled('pull_x', unit)}, 0.0, {scaled('pull_z', unit)}",
+                *moves[way],
+                "world.step()",
+            ),
+            pose=(
+                "turn = bodies[number].rotation",
+                "theta, rate = 2.0 * math.atan2(turn.j, turn.w), bodies[number].angvel.y",
+            ),
+            place=f"(bodies[0].translation.x{under}) / {unit!r}",
+        )
 
 
 TUNED = RapierSettings(
@@ -315,60 +298,39 @@ FRICTIONLESS = "a contact whose body cannot move aside has no friction at all"
 WITHOUT_NORMAL = "a ball whose centre rounds onto a surface has no contact there for a step"
 SMOOTH = "the library's own friction: a block of H/B = 2 slides before it rocks"
 
-DOCUMENTED = (
-    Citation("step", "1/60 s, the default", "IntegrationParameters.dt"),
-    Citation("substeps", "4, the default", "IntegrationParameters.num_solver_iterations"),
-    Citation("sleeping", "on, the default", "RigidBodyBuilder.can_sleep"),
-    Citation("friction", "0.5, of a pair the mean; here 1", "ColliderBuilder.friction"),
-    Citation(
-        "friction",
-        "simplified, one for all points; not solved where depths are corrected",
-        "IntegrationParameters.friction_model, friction_in_bias_pass",
-    ),
-    Citation(
-        "contact",
-        "a spring of 30 Hz, damping ratio 10; 60 Hz on what does not move",
-        "IntegrationParameters.contact_softness, static_contact_softness",
-    ),
-    Citation(
-        "contact",
-        "from 0.02 away, and kept while bodies move by less than 0.05",
-        "IntegrationParameters.normalized_prediction_distance, contact_recycling",
-    ),
-    Citation(
-        "iterations",
-        "1 a substep and 1 of stabilization, from all of the last impulses",
-        "IntegrationParameters.num_internal_pgs_iterations, warmstart_coefficient",
-    ),
-    Citation(
-        "without effect",
-        "allowed_linear_error 0.005, max_corrective_velocity 3, max_linear_velocity 400, "
-        "max_ccd_substeps 1, contact_clustering; no damping",
-        "IntegrationParameters, RigidBodyBuilder",
-    ),
-    Citation(
-        "floor",
-        "kinematic_position_based, set_next_kinematic_translation; shown second: linvel of one "
-        "that is velocity-based",
-        "rapier.rs, user guide for Python, Common recipes: Making a moving platform",
-    ),
-)
+DOCUMENTED = citations("""
+step | 1/60 s, the default | IntegrationParameters.dt
+substeps | 4, the default | IntegrationParameters.num_solver_iterations
+sleeping | on, the default | RigidBodyBuilder.can_sleep
+friction | 0.5, of a pair the mean; here 1 | ColliderBuilder.friction
+friction | simplified, one for all points; not solved where depths are corrected |
+    IntegrationParameters.friction_model, friction_in_bias_pass
+contact | a spring of 30 Hz, damping ratio 10; 60 Hz on what does not move |
+    IntegrationParameters.contact_softness, static_contact_softness
+contact | from 0.02 away, and kept while bodies move by less than 0.05 |
+    IntegrationParameters.normalized_prediction_distance, contact_recycling
+iterations | 1 a substep and 1 of stabilization, from all of the last impulses |
+    IntegrationParameters.num_internal_pgs_iterations, warmstart_coefficient
+without effect | allowed_linear_error 0.005, max_corrective_velocity 3, max_linear_velocity 400,
+    max_ccd_substeps 1, contact_clustering; no damping | IntegrationParameters, RigidBodyBuilder
+floor | kinematic_position_based, set_next_kinematic_translation; shown second: linvel of one that
+    is velocity-based | rapier.rs, user guide for Python, Common recipes: Making a moving platform
+""")
 """What its documentation sets, in rapier3d 0.36.1."""
 
-RECOMMENDED = (
-    Citation("step", "1/120 s", "rapier.rs, user guide for Python, Integration parameters"),
-    Citation("substeps", "8, for a more accurate simulation", "the same page"),
-    Citation("friction_model", "Coulomb, the more accurate one", "integration_parameters.rs"),
-)
-"""What it recommends for accurate contact."""
+RECOMMENDED = citations("""
+step | 1/120 s | rapier.rs, user guide for Python, Integration parameters
+substeps | 8, for a more accurate simulation | the same page
+friction_model | Coulomb, the more accurate one | integration_parameters.rs
+""")
 
-PASTED = (
-    Citation("substeps", "8, for a more accurate simulation", "rapier.rs, user guide for Python"),
-    Citation("contact", "1000 Hz, damping ratio 1, from 0.001 away", "measured here"),
-    Citation("contact", "neither taken from the last step nor started from it", "measured here"),
-    Citation("iterations", "none of stabilization", "measured here"),
-    Citation("sleeping", "off: gravity that turns wakes nothing", "measured here"),
-)
+PASTED = citations("""
+substeps | 8, for a more accurate simulation | rapier.rs, user guide for Python
+contact | 1000 Hz, damping ratio 1, from 0.001 away | measured here
+contact | neither taken from the last step nor started from it | measured here
+iterations | none of stabilization | measured here
+sleeping | off: gravity that turns wakes nothing | measured here
+""")
 
 FACTORS = (
     factor(
@@ -414,16 +376,8 @@ FACTORS = (
     ),
     moving_base("both", "target", "velocity", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default",
-    settings=RapierSettings(),
-    step_s=1.0 / 60.0,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.5},
-)
+NAIVE = default(RapierSettings(), 1.0 / 60.0, DOCUMENTED, friction=0.5)
 
 ENGINE = Engine(
     name="rapier",
@@ -431,6 +385,7 @@ ENGINE = Engine(
     library="rapier3d",
     build=RapierWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         replace(NAIVE.at_rest(), rest_s=0.0),  # it would count as time to fall asleep
@@ -447,16 +402,14 @@ ENGINE = Engine(
             sleeping=False,
         ),
         Preset(name="tuned", settings=TUNED, step=5e-4),
-        Preset(
-            name="landing",
-            settings=replace(TUNED, reflection=True),
-            stepping=Stepping.LANDING,
+        landing(
+            replace(TUNED, reflection=True),
+            {Help.REFLECTION: {"reflection": False}},
             stacked=None,
-            helped_by={Help.STEPS: None, Help.REFLECTION: {"reflection": False}},
         ),
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,
-    script=script,
+    script=RapierWorld.script,
     factors=FACTORS,
 )

@@ -10,8 +10,8 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 
-from engines.declaration import Builder, Engine, Help, Preset, Stepping
-from engines.settings import check, one_of, setting
+from engines.declaration import Builder, Engine, Preset, landing
+from engines.settings import Settings, one_of, setting
 
 FURTHER = "ROCKING_ENGINES"
 """Environment variable: engines that no package announces, as "name=module:ENGINE" with blanks
@@ -168,13 +168,10 @@ def find(name: str | Engine) -> Engine:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlainSettings:
+class PlainSettings(Settings):
     """The one setting that every engine must take: friction between block and base."""
 
     friction: float = setting(1.0, above=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
 
 def undeclared(name: str, build: Builder, library: str) -> Engine:
@@ -183,12 +180,6 @@ def undeclared(name: str, build: Builder, library: str) -> Engine:
     It holds one body, in the frame "base" alone, in equal steps and in ones that land.
     """
     fixed = Preset(name="tuned", title="equal steps", settings=PlainSettings(), step=1e-3)
-    landing = Preset(
-        name="landing",
-        settings=PlainSettings(),
-        stepping=Stepping.LANDING,
-        helped_by={Help.STEPS: None},
-    )
     return Engine(
         name=name,
         title=name,
@@ -196,6 +187,6 @@ def undeclared(name: str, build: Builder, library: str) -> Engine:
         packages=(),
         install=library,
         build=build,
-        presets=(fixed, landing),
+        presets=(fixed, landing(PlainSettings())),
         frames=("base",),
     )

@@ -49,10 +49,12 @@ class Beginning(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A homogeneous box, upright where its rotation is zero.
+    """A box, upright where its rotation is zero.
 
     Its full sizes [m] are along x, z and y, which is out of the plane; its density is in kg/m3. At
-    home its centre is at rest, along the base and above it [m]; at says where it begins.
+    home its middle is at rest, along the base and above it [m]; at says where that begins. The mass
+    stands to the right of it, at `offset` [m]; `square` is its moment of inertia about the axis y
+    over the mass [m2], None where it is spread evenly.
     """
 
     width: float
@@ -61,6 +63,26 @@ class Body:
     density: float
     home: tuple[float, float]
     at: Beginning
+    offset: float = 0.0
+    square: float | None = None
+
+    @property
+    def mass_at(self) -> Beginning:
+        """Where its mass begins, and how fast."""
+        at, right = self.at, self.offset * math.cos(self.at.theta)
+        down = self.offset * math.sin(at.theta)
+        along, up = at.velocity_x - at.rate * down, at.velocity_z - at.rate * right
+        return Beginning(at.x + right, at.z - down, at.theta, along, up, at.rate)
+
+    @property
+    def about_middle(self) -> float:
+        """Moment of inertia [kg m2] about the middle and the axis y."""
+        return self.inertia[1] + self.mass * self.offset**2
+
+    @property
+    def is_homogeneous(self) -> bool:
+        """Whether its mass is spread evenly."""
+        return self.offset == 0.0 and self.square is None
 
     @property
     def mass(self) -> float:
@@ -72,7 +94,8 @@ class Body:
         """Moments of inertia [kg m2] about the centre of mass and the axes x, y, z."""
         x, y, z = self.width, self.depth, self.height
         twelfth = self.mass / 12.0
-        return (twelfth * (y * y + z * z), twelfth * (x * x + z * z), twelfth * (x * x + y * y))
+        turning = twelfth * (x * x + z * z) if self.square is None else self.mass * self.square
+        return (twelfth * (y * y + z * z), turning, twelfth * (x * x + y * y))
 
 
 class Contact(NamedTuple):
@@ -145,9 +168,9 @@ def _standing(system: Any, density: float, depth: float | None, start: Start, ho
 
 def one_block(system: Upright, density: float, depth: float | None, start: Start) -> Layout:
     """Return one block on the base."""
-    if isinstance(system, RigidBlock) and not system.is_homogeneous:
-        raise ValueError(f"system is {system!r}; it must be a homogeneous block")
     block = _standing(system, density, depth, start, 0.0)
+    if isinstance(system, RigidBlock):
+        block = replace(block, offset=system.offset, square=system.inertia)
     return Layout((block,), (Contact(0, LOWER, BASE),), 1)
 
 
@@ -329,7 +352,7 @@ class Scene:
         theta, rate = start_of(start)
         # of what slides they are place [m] and velocity [m/s]
         if layout_of(self.system, self.density, self.depth, (theta, rate)).rocking:
-            check_tilt(theta, rate, self.system.alpha, lambda: not _moves(self.motion))
+            check_tilt(theta, rate, self.alphas[theta < 0.0], lambda: not _moves(self.motion))
         return theta, rate
 
     @property
@@ -358,6 +381,12 @@ class Scene:
     def stacked(self) -> bool:
         """Whether bodies rest on others."""
         return len(self.bodies) > 1
+
+    @property
+    def alphas(self) -> tuple[float, float]:
+        """Rotations [rad] from which its weight no longer brings it back, to the right and left."""
+        right, left = getattr(self.system, "sides", (self.system, self.system))
+        return right.alpha, left.alpha
 
     @property
     def watched(self) -> float:

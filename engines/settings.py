@@ -53,15 +53,10 @@ class Allowed:
         """Raise ValueError unless `value` is allowed."""
         if self.names:
             one_of(name, value, self.names)
-        elif self._bounded and not (isinstance(value, Real) and self._holds(float(value))):
-            raise ValueError(f"{name} is {value!r}; it must be {self._words()}")
-
-    def _holds(self, value: float) -> bool:
-        return value > self.above and self.least <= value <= self.most and math.isfinite(value)
-
-    @property
-    def _bounded(self) -> bool:
-        return max(self.above, self.least, -self.most) > -math.inf
+        elif words := self._words():
+            held = isinstance(value, Real) and math.isfinite(value)
+            if not (held and self.above < value and self.least <= value <= self.most):
+                raise ValueError(f"{name} is {value!r}; it must be {words}")
 
     def _words(self) -> str:
         most = "" if self.most == math.inf else f"at most {self.most:g}"
@@ -96,6 +91,15 @@ def check(settings: Any) -> None:
             )
         if value is not None or (allowed.names and item.default is not None):
             allowed.check(item.name, value)
+
+
+class Settings:
+    """Settings of an engine, which are checked when they are made."""
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        check(self)
 
 
 def given(settings: Mapping[str, Any]) -> dict[str, Any]:

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 
 from engines.scene import LOWER, Body, Scene
+from engines.settings import Settings
 
 Point = tuple[float, float, float]
 
@@ -67,7 +68,7 @@ def floor_half_size(scene: Scene) -> Point:
     return floor_reach(scene), FLOOR_HEIGHTS * scene.bodies[0].depth, scene.bodies[0].height
 
 
-class Counted:
+class Counted(Settings):
     """Settings of an engine that need not count lengths in metres from the base.
 
     In single precision it matters: a rounding of the pivot's height is a velocity in a short step.

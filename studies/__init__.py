@@ -188,9 +188,9 @@ def side_by_side(
 
     from analytic.checks import finite
     from studies.cases.refusal import BadInputError
-    from studies.compare.rows import compare, records
+    from studies.compare import compare, records
+    from studies.kit.arguments import EffortOptions, Yours
     from studies.kit.jobs import Question
-    from studies.kit.options import EffortOptions, Yours
     from studies.kit.scene_options import window_of
 
     if isinstance(sources, str) or not (sources := list(sources)):

@@ -22,22 +22,13 @@ from engines.factors import DEFAULT
 from engines.registry import OWN
 from engines.run.run import YAW
 from studies.cases.drawn import free_boxes
-from studies.kit.arguments import (
-    Engines,
-    NotNegative,
-    Place,
-    Positive,
-    as_bad_input,
-    refuse_given,
-    refuse_repeats,
-    several_or_none,
-)
+from studies.kit import arguments
+from studies.kit.arguments import Running
 from studies.kit.jobs import Job, Question, Row, ask, summary
-from studies.kit.options import Running
 from studies.kit.say import aligned, as_text, duration, out_of, part
 from studies.kit.scene_options import Height, Width, block_of
 from studies.kit.store import check
-from studies.kit.study import Study, Tables
+from studies.kit.study import Study, Tables, stages
 from studies.kit.tables import table_in
 from studies.measures import published as known
 from studies.measures.costs import cheapest_kept
@@ -64,13 +55,13 @@ NEEDED = tuple(f"advice/{name}.csv" for name in (ADVICE, LINES))
 
 def command(
     *,
-    engines: Annotated[Engines | None, Parameter(name=("--engines", "--engine"))] = None,
-    dt: Positive | None = None,
-    friction: NotNegative = FRICTION,
+    engines: Annotated[arguments.Engines | None, Parameter(name=("--engines", "--engine"))] = None,
+    dt: arguments.Positive | None = None,
+    friction: arguments.NotNegative = FRICTION,
     width: Width = BLOCK.width,
     height: Height = BLOCK.height,
-    error: Annotated[tuple[Positive, ...], several_or_none] = (),
-    out: Place | None = None,
+    error: Annotated[tuple[arguments.Positive, ...], arguments.several_or_none] = (),
+    out: arguments.Place | None = None,
     quick: bool = False,
     running: Running = Running(),  # noqa: B008
 ) -> int:
@@ -99,10 +90,10 @@ def command(
     asked = engines or tuple(OWN)
     if out is not None:
         return STUDY.carry_out(out, jobs(asked, quick), running, engines=asked, quick=quick)
-    refuse_given({"quick": quick or None}, "only with --out")
+    arguments.refuse_given({"quick": quick or None}, "only with --out")
     block = block_of(width, height)
     if error:
-        refuse_repeats("--error", error)
+        arguments.refuse_repeats("--error", error)
         check(PUBLISHED, (known.LADDER, *known.PAPER), "the published tables")
         found = cheapest(PUBLISHED, asked, error, block)
         title = "The cheapest setting that keeps each error, with every finer step (value: p dt, or"
@@ -111,7 +102,7 @@ def command(
     check(PUBLISHED, NEEDED, "the published tables")
     if len(asked) == 1:
         own = ENGINES[asked[0]].preset(AT_REST).step_s
-        with as_bad_input():
+        with arguments.as_bad_input():
             print(*screen(asked[0], block, dt or own, friction), sep="\n")
         return 0
     advice = table_in(PUBLISHED / "advice", ADVICE)
@@ -346,9 +337,6 @@ STUDY = Study(
     question="Which lines make a free box on a floor at rest rock accurately?",
     help="Random boxes of six degrees of freedom, at each library's own step and at 1 ms.",
     jobs=lambda *_: (),
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
     texts=("literal",),
+    **stages(measure, tabulate, finding, shown),
 )

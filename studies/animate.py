@@ -9,12 +9,10 @@ import numpy as np
 from analytic.response import Outcome
 from analytic.slide import SlidingBlock
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import Place, Sources, check_file
-from studies.kit.cluster import place_of
+from studies.kit.arguments import Computing, Place, Sources, Yours, check_file
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.options import Computing, Yours
 from studies.kit.run import Place as Where
-from studies.kit.run import exit_code, here, run, with_response
+from studies.kit.run import exit_code, here, place_of, run, with_response
 from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
 from studies.sources.registry import core_sources
 

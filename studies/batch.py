@@ -17,7 +17,7 @@ from engines.world import FloatArray
 from studies.cases.refusal import BadInputError
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.kit.tables import unpacked
 from studies.measures.batches import (
     EVERY,
@@ -170,13 +170,8 @@ All take equal steps on a base at rest. MJX is not asked: on an H100, 1024 world
 end within 160 s. Ten minutes without Warp; an hour with it on a CPU.""",
     options=Options,
     quick="64 cases, and one step of each preset.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={"batch": "A line for each preset and way to step, from coarse steps to fine."},
     alone=True,
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -1,12 +1,15 @@
-"""Contact models: what each setting of an engine's contact costs and buys, one at a time."""
+"""Contact models: what each setting of an engine's contact costs and buys, one at a time.
+
+From the best setting of an engine one factor at a time, and from its library's defaults.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from itertools import islice
-from typing import Annotated, cast
+from typing import Annotated, Any, cast
 
 import numpy as np
 import pandas as pd
@@ -15,18 +18,16 @@ from cyclopts import Parameter
 from analytic import conditioning
 from analytic.frame import Rocker, RockingFrame
 from analytic.response import Outcome
-from engines import ENGINES, core_engines
-from engines.declaration import Stepping
-from engines.factors import BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
+from engines import ENGINES, core_engines, factors
+from engines.declaration import AT_REST, PASTED, Stepping
 from engines.scene import Scene, free_rocking_window
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.paper import Case, chosen_cases
 from studies.cases.refusal import BadInputError
-from studies.cases.variants import Variant, variants
 from studies.kit.arguments import Engines, one_of
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import out_of, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.differences import WELL_CONDITIONED, with_reference
 from studies.measures.history import SAMPLES, growth
 from studies.measures.wrongness import FALL, NO_ANSWER, REST, wrong_in
@@ -36,12 +37,13 @@ KEY = ["engine", "preset", "factor", "level"]
 """Columns that tell one variant from another."""
 FOUND = ["failed", "wrong", "max_error"]
 """What shows a variant's quality: outcomes of all cases, peaks of typical ones."""
-
-
+STILL = f"{factors.OWN_STEP}, on a base at rest"
+"""The defaults at their own step once more, in the other frame."""
+AT_ONCE = f"{factors.OWN_STEP}, shaken at once"
+"""The same without the rest before the motion."""
 SCENES = "block: cases of the paper. frame: random frames, a beam on 2 to 5 columns."
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Which engines, and what stands on the base."""
@@ -72,10 +74,77 @@ def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
         job_of(variant, kind, case, quick, own_step)
         for own_step in (False, True)
         for variant in tried
-        if not own_step or (variant.preset == DEFAULT and variant.factor != OWN_STEPS)
+        if not own_step
+        or (variant.preset == factors.DEFAULT and variant.factor != factors.OWN_STEPS)
         for kind, case in cases
         if not framed or is_built_for(variant, case)
     ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Variant:
+    """One way to set an engine: a preset, which factor differs from it, and how.
+
+    A preset as it is has no factor, and its title as level. `settings` and `scene` replace those
+    of the preset; `trap` says why it goes wrong without a word, where it does.
+    """
+
+    engine: str
+    preset: str
+    factor: str = ""
+    level: str
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    scene: Mapping[str, Any] = field(default_factory=dict)
+    trap: str = ""
+
+    @property
+    def source(self) -> str:
+        """The engine's preset."""
+        return f"{self.engine}:{self.preset}"
+
+
+def variants(engine: str) -> Iterator[Variant]:
+    """Yield every way to set an engine, each preset as it is before what differs from it."""
+    declared = ENGINES[engine]
+    plain = {
+        use.name: Variant(engine=engine, preset=use.name, level=use.title)
+        for use in declared.presets
+    }
+    for name in [name for name in plain if name not in (*factors.BOTH, AT_REST, PASTED)]:
+        yield plain[name]
+        for help_, settings in declared.preset(name).helped_by.items():
+            if settings is not None:
+                level = help_.name.lower()
+                yield replace(plain[name], factor=factors.LEFT_OUT, level=level, settings=settings)
+    for name in [name for name in factors.BOTH if name in plain]:
+        yield plain[name]
+        if name == factors.DEFAULT:
+            own = replace(plain[name], factor=factors.OWN_STEPS, level=factors.OWN_STEP)
+            yield own
+            yield replace(own, level=AT_ONCE, scene={"rest_s": 0.0})
+            if declared.preset(name).frame == "world":
+                yield replace(own, level=STILL, scene={"frame": "base"})
+        for factor in declared.factors:
+            if set(factors.BOTH) <= plain.keys():
+                yield from _exchanged(plain[name], factor)
+            for item in factor.levels:
+                if name in item.presets:
+                    varied = {each: getattr(item, each) for each in ("settings", "scene", "trap")}
+                    yield replace(plain[name], factor=factor.name, level=item.name, **varied)
+
+
+def _exchanged(plain: Variant, factor: factors.Factor) -> Iterator[Variant]:
+    """Yield one of the two presets with the other's values of a factor, where these differ."""
+    untuned = plain.preset == factors.DEFAULT
+    chosen = [
+        ENGINES[plain.engine].preset(name).settings for name in (factors.DEFAULT, factors.BEST)
+    ]
+    default, best = ({name: getattr(of, name) for name in factor.settings} for of in chosen)
+    own, wanted = (default, best) if untuned else (best, default)
+    if wanted != own and (untuned or factor.by_default):
+        trap = factor.traps.get(plain.preset, "")
+        level = factors.AS_BEST if untuned else factors.BY_DEFAULT
+        yield replace(plain, factor=factor.name, level=level, settings=wanted, trap=trap)
 
 
 def frame_cases(quick: bool) -> list[tuple[str, RandomCase]]:
@@ -101,7 +170,7 @@ def job_of(
     """Return the job of a variant and a case, at the library's own step or at that of all."""
     options = {"settings": dict(variant.settings), **variant.scene}
     stepping = ENGINES[variant.engine].preset(variant.preset).stepping
-    if stepping is Stepping.FIXED and variant.factor != OWN_STEPS and not own_step:
+    if stepping is Stepping.FIXED and variant.factor != factors.OWN_STEPS and not own_step:
         options["step"] = 2e-3 if quick else 1e-3
     labels = {name: getattr(variant, name) for name in (*KEY, "trap")}
     labels |= {"own_step": own_step, "set": kind, **asdict(case)}
@@ -112,10 +181,7 @@ def job_of(
 
 
 def measure(job: Job) -> Row:
-    """Return the summary, the velocity ratio and its e, slip, penetration and energy.
-
-    Of a frame the velocity ratio implies no e of a single corner.
-    """
+    """Return the summary, the velocity ratio and its e, slip, penetration and energy."""
     response, motion = ask(job), job.case.motion
     system = cast(Rocker, job.case.system)
     least = 0.1 * system.p * system.alpha  # slower impacts show no velocity ratio
@@ -187,9 +253,9 @@ def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
 
 def left_at_default(lines: pd.DataFrame) -> pd.DataFrame:
     """Return each tuned setting alone at its default, first for each engine what costs most."""
-    best = lines[lines["preset"] == BEST]
+    best = lines[lines["preset"] == factors.BEST]
     tuned = best[best["factor"] == ""].set_index("engine")["max_error"]
-    left = best[best["level"] == BY_DEFAULT]
+    left = best[best["level"] == factors.BY_DEFAULT]
     place, as_tuned = left.groupby("engine", sort=False).ngroup(), left["engine"].map(tuned)
     order, rising = ["place", "worse", "failed", "max_error"], [True, False, False, False]
     left = left.assign(place=place, as_tuned=as_tuned).sort_values(order, ascending=rising)
@@ -216,7 +282,7 @@ def shown(tables: Tables) -> Tables:
     """Return what each tuned setting costs at its default, the presets, and the traps."""
     lines = tables["variants"]
     plain = lines["factor"] == ""
-    own = lines[lines["factor"] == OWN_STEPS]
+    own = lines[lines["factor"] == factors.OWN_STEPS]
     measured = ["median_error", "ratio_over_eta", "newton_e"]
     measured += ["slip_widths", "sink_widths", "step_s"]
     traps = lines[(lines["trap"] != "") & ~plain]
@@ -230,7 +296,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw what the settings that matter most are worth, where an engine has a tuned contact."""
-    from studies.drawing.contact import draw_contact
+    from studies.drawing.rows import draw_contact
 
     left = left_at_default(tables["variants"])
     return {"contact": draw_contact(left)} if len(left) else {}
@@ -247,17 +313,12 @@ failed variant is a result: the exit code is 1 only if a whole preset fails. Wri
 variants.csv, own-steps.csv, findings.txt and contact.png.""",
     options=Options,
     quick="Fewer cases and twice the step: less than a minute on 2 cores.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if not row["factor"] and not row["own_step"]],
     texts=("factor", "level", "trap"),
     captions={
         "contact": "Largest error of typical peaks with the tuned contact of each engine, and with "
         "one setting left at the library's default: the three settings that matter most.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -15,12 +15,10 @@ from engines.run.slide import LEAST_SLIP, SLIP_RATE
 from engines.run.steps import begin_of
 from engines.settings import perhaps
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import Place, Step, TimeLimit, refuse_both
-from studies.kit.cluster import place_of
+from studies.kit.arguments import Computing, Place, Step, TimeLimit, Yours, refuse_both
 from studies.kit.identity import version_of
 from studies.kit.jobs import Job, Question
-from studies.kit.options import Computing, Yours
-from studies.kit.run import exit_code, run, with_response
+from studies.kit.run import exit_code, place_of, run, with_response
 from studies.kit.say import listed
 from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
 from studies.kit.store import project_version
@@ -113,11 +111,7 @@ def source_of(engine: str) -> str:
 
 
 def files(use: Use, expected: Any, exact: Any) -> dict[str, str]:
-    """Return the name and text of every file of a scene that has a duration.
-
-    What the script is to find, and what the exact solution does, is the largest rotation over the
-    critical one, or the slips [m] where nothing rocks.
-    """
+    """Return the name and text of every file of a scene that has a duration."""
     assert use.engine.script is not None  # `source_of` refuses what cannot be written out
     scene, script = use.scene, use.engine.script(use.scene, use.settings, use.dt_s)
     environment = Environment(

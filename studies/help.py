@@ -4,8 +4,7 @@ from typing import Literal
 
 from cyclopts import App, Parameter
 
-from studies.kit.arguments import Sources
-from studies.kit.options import Running
+from studies.kit.arguments import Running, Sources
 
 
 def command(topic: Literal["run"] = "run") -> int:

@@ -7,7 +7,6 @@ from typing import Annotated
 
 import numpy as np
 import pandas as pd
-from cyclopts import Parameter
 
 from analytic.response import Outcome
 from engines.scene import free_rocking_window
@@ -16,8 +15,7 @@ from studies.kit.arguments import figures as some_figures
 from studies.kit.arguments import sources_option
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import capital, out_of
-from studies.kit.study import Figures, Study, Tables
-from studies.measures.claims import claim, table_of
+from studies.kit.study import Figures, Study, Tables, claim, stages
 from studies.measures.history import samples
 
 LINEAR = ("exact", "housner", "modified")
@@ -29,7 +27,6 @@ SAMPLES = ["time_s", "ground_g", "theta_ratio", "velocity_rad_s"]
 """Columns of a figure's samples."""
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Which figures, and whose lines."""
@@ -78,7 +75,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
         tested = tables.get(name, lines) if number == 2 else lines
         silent = tested["source"].isin(lines.loc[failed, "source"])
         found.append(FIGURES[name][1](tested[~silent]))
-    return {**tables, "findings": table_of(found)}
+    return {**tables, "findings": pd.DataFrame(found)}
 
 
 def finding(tables: Tables) -> str:
@@ -157,16 +154,11 @@ STUDY = Study(
 Tests what the paper says about them. Takes a few seconds. Writes histories.csv, findings.csv,
 findings.txt, and a table and a picture for each figure.""",
     options=Options,
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "figure": "Rotation against time: a line for each source, a panel for each case.",
         "figure-2": "Rotation against time, and below it the difference of each solver from the "
         "exact solution; a pair of panels for each pulse.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

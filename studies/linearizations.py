@@ -15,8 +15,7 @@ from analytic.motion import SinePulse
 from studies.cases.paper import PULSES, sweep_cases
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import out_of, part
-from studies.kit.study import Figures, Study, Tables
-from studies.measures.claims import Finding, table_of
+from studies.kit.study import Figures, Finding, Study, Tables, stages
 from studies.measures.differences import posed_cases
 from studies.measures.wrongness import wrong_in
 
@@ -34,11 +33,7 @@ ERRORS = ["median_error", "max_error"]
 
 
 def variant(changed: str) -> Model:
-    """Return the linear model with Housner's or, by a 1, the modified onset, frequency and saddle.
-
-    The onset is g alpha or g tan(alpha), the frequency p or p sqrt(cos(alpha)), the saddle alpha or
-    tan(alpha); the forcing factor is the saddle over the onset.
-    """
+    """Return the linear model with Housner's or (a 1) the modified onset, frequency and saddle."""
     onset, frequency, saddle = (digit == "1" for digit in changed)
     words = f"onset g {'tan ' * onset}α, p{'√cos α' * frequency}, saddle {'tan ' * saddle}α"
     known = NAMED.get(changed, "")
@@ -59,11 +54,7 @@ VARIANTS = {word: variant(word) for word in map("".join, product("01", repeat=3)
 
 @cache
 def grid(name: str) -> pd.DataFrame:
-    """Return the cases of a grid, and the exact solution's peaks and outcomes.
-
-    "paper" is that of figures 6 to 9, without the copies by similarity; "wide" has H/B from 1.5 to
-    10, amplitudes from 1.02 to 4 onsets and omega/p from 0.2 to 8.
-    """
+    """Return the cases of a grid, and the exact solution's peaks and outcomes."""
     if name == "paper":
         cases = [c for c in sweep_cases([6, 7, 8, 9]) if c.width_m == 0.5]
         rows = [(c.aspect, c.amplitude_g, c.omega_over_p, PULSES[c.pulse]) for c in cases]
@@ -124,7 +115,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     return {
         "linearizations": lines.assign(title=[VARIANTS[word].title for word in lines["changed"]]),
         "slenderness": by_aspect,
-        "findings": table_of([conclusion(lines)]),
+        "findings": pd.DataFrame([conclusion(lines)]),
     }
 
 
@@ -146,7 +137,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw the median errors over the slenderness."""
-    from studies.drawing.linearizations import draw_errors
+    from studies.drawing.figures import draw_errors
 
     titles = {word: model.title for word, model in VARIANTS.items()}
     return {"linearizations": draw_errors(tables["slenderness"], titles)}
@@ -175,15 +166,10 @@ Compares all eight combinations of Housner's and the modified choices with the e
 the paper's cases and on a wider grid. Takes half a minute. Writes linearizations.csv,
 slenderness.csv, findings.csv, findings.txt and a picture.""",
     texts=("changed",),
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "linearizations": "Median error of the peak against H/B, for eight linearizations on two "
         "grids; colours stand for the onset, dashes for the frequency.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -26,7 +26,7 @@ from studies.kit.arguments import Positive, as_bad_input
 from studies.kit.jobs import Job, Question, Row, answer
 from studies.kit.say import part
 from studies.kit.scene_options import Pulse
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.presets import titled
 from studies.measures.wrongness import FALL, KINDS, NO_ANSWER, REST, wrong_in
 from studies.sources.registry import resolve
@@ -48,7 +48,6 @@ RIGHT, FALSE, MISSED, OFF, INVALID = "right", "false", "missed", "peak off", "in
 """Verdicts, beside kinds of wrong outcomes; invalid where the block should slide or lift off."""
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Which plane of pulses the models map."""
@@ -304,11 +303,6 @@ compute single pulses on two similar blocks.""",
         "after-rest": "The same maps for pulses after a second of rest, in which an engine may put "
         "the block to sleep.",
     },
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

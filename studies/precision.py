@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from itertools import product
 from typing import Any
@@ -18,10 +18,10 @@ from analytic.response import Outcome, Response
 from engines import ENGINES
 from engines.declaration import Engine
 from engines.scene import free_rocking_window
-from studies.cases.paper import HISTORIES, Case, chosen_cases
+from studies.cases.paper import HISTORIES, chosen_cases
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import duration, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.costs import EXACT, best_of, cheapest_below, exact_cost, joint, parts_of
 from studies.measures.presets import engine_of, look_of, uses_of
 from studies.measures.published import TARGETS
@@ -129,10 +129,7 @@ def measure(job: Job) -> Row:
 
 
 def along(job: Job) -> Row:
-    """Run a job over its whole window once, then time it to its peak alone.
-
-    A wrong outcome is an infinite error, so that it cannot pass unseen; a failed row has none.
-    """
+    """Run a job over its whole window once, then time it to its peak alone."""
     whole, block, case = ask(job), job.case.system, job.case
     assert isinstance(block, RigidBlock)
     plain = replace(job, case=replace(case, duration=None))
@@ -200,27 +197,18 @@ def put_back(job: Job) -> Row:
     }
 
 
-COLUMNS = {
-    ALONG: [
-        *("method", "value", "set", *(item.name for item in fields(Case)), "budget_s", "source"),
-        *("outcome", "peak_ratio", "impacts", "steps", "wall_s", "message"),
-        *("setup_s", "runs", "error"),
-    ],
-    SCENES: [
-        *("engine", "scene", "outcome", "wall_s", "runs", "steps"),
-        *("step_s", "plain_s", "setup_s", "error", "message"),
-    ],
-}
+OF_SCENES = [
+    *("engine", "scene", "outcome", "wall_s", "runs", "steps"),
+    *("step_s", "plain_s", "setup_s", "error", "message"),
+]
+"""Columns of the table of scenes."""
 
 
-def tabulate(rows: pd.DataFrame) -> Tables:
+def tabulate(rows: Tables) -> Tables:
     """Return the rows of each table, and a line for each method, setting and set of cases."""
-    found = {}
-    for name, columns in COLUMNS.items():
-        table = rows[rows["table"] == name].reindex(columns=columns)
-        whole = {"figure", "aspect", "runs"}.intersection(columns)
-        found[name] = table.astype(dict.fromkeys(whole, int))
-    return {**found, "work-precision": work_precision(found[ALONG])}
+    scenes = rows.get(SCENES, pd.DataFrame()).reindex(columns=OF_SCENES)
+    found = rows[ALONG].drop(columns="table")
+    return {ALONG: found, SCENES: scenes, "work-precision": work_precision(found)}
 
 
 def work_precision(rows: pd.DataFrame) -> pd.DataFrame:
@@ -244,10 +232,7 @@ def engines_of(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def cheapest(table: pd.DataFrame) -> tuple[float, pd.Series[Any], str] | None:
-    """Return the smallest error that an engine keeps, its cheapest setting, and on which cases.
-
-    They are all cases, or typical ones where no setting keeps an error on all.
-    """
+    """Return the smallest error that an engine keeps, its cheapest setting, and on which cases."""
     engines = engines_of(table)
     for cases, lines in ((ALL, joint(engines)), (TYPICAL, engines[engines["set"] == TYPICAL])):
         for target in reversed(TARGETS):
@@ -325,12 +310,6 @@ moving base. A compiled loop over mj_step takes MuJoCo's steps; Python takes all
 --jobs above 1 processes slow each other down. Takes about 10 minutes.""",
     sources=(*dict.fromkeys(method.source for method in PLAIN.values()), *core_sources()),
     quick="Fewer cases and settings, shorter timing: one and a half minutes.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if row["table"] == ALONG],
     captions={
         "precision": "Median error of the peak against run time, from coarse to fine settings: "
@@ -338,5 +317,7 @@ moving base. A compiled loop over mj_step takes MuJoCo's steps; Python takes all
         "steps. A cross marks a failed case or a wrong outcome."
     },
     alone=True,
+    split="table",
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

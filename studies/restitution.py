@@ -16,7 +16,6 @@ from itertools import product
 from typing import cast
 
 import pandas as pd
-from cyclopts import Parameter
 
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
@@ -28,7 +27,7 @@ from studies.cases.ways import WAYS, WITHOUT
 from studies.kit.arguments import Engines
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import listed, one_line, out_of
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.sources.registry import scene_of
 
 VARIED = {
@@ -49,7 +48,6 @@ SHOWN = 0.6
 STILL = SinePulse(amplitude=0.0, omega=1.0, half_cycles=1)
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Which engines."""
@@ -198,11 +196,7 @@ def finding(tables: Tables) -> str:
 
 
 def best_of(corners: pd.DataFrame) -> pd.DataFrame:
-    """Return the line of each engine's best way.
-
-    It is one with which the corner does not slide, where there is one; of these the one that is
-    least off over all strikes, and, where these are as far off, over the usual ones.
-    """
+    """Return the line of each engine's best way."""
     ranked = corners.assign(slid=corners["slide"] > SLIDES).sort_values(
         ["slid", "off_over_all", "off"], kind="stable"
     )
@@ -222,7 +216,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw the strikes of each engine's plainest and best way."""
-    from studies.drawing.restitution import draw_strikes
+    from studies.drawing.figures import draw_strikes
 
     corners = tables["corners"]
     plain, best = corners.drop_duplicates("engine"), best_of(corners)
@@ -238,16 +232,11 @@ Coefficients from 0 to 1 are set; the place of the impact within a step varies, 
 rate, height and slenderness. A column gives the share of its angular rate that the block keeps.
 Takes half a minute. Writes restitution.csv, corners.csv, findings.txt and a picture.""",
     options=Options,
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     texts=("way", "varied", "literal"),
     captions={
         "strikes": "Restitution of the striking corner against the coefficient that is set, with "
         "each engine's plainest and best settings. Bands: the range over all variations.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -21,7 +21,7 @@ from engines.run.run import LAG
 from studies.cases.drawn import calm_frames, slides
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import listed, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.presets import engine_of, in_order, is_engine, preset_of, titled
 from studies.measures.wrongness import FALL, NO_ANSWER, WORDS, kind_of
 from studies.sources.registry import Source, core_sources, resolve
@@ -34,7 +34,6 @@ RIDE = SinePulse(amplitude=1.0, omega=2.0 * math.pi, half_cycles=4)
 SEED, CASES = 54, 60
 """Of the random frames and slides."""
 
-SHARED = ("outcome", "peak_ratio", "impacts", "steps", "wall_s", "message", "reason")
 SEEN = {
     "frame": ("parting", "tilt", "drift_m"),
     "slide": ("place_m", "lift_m", "flat_m", "turn_rad"),
@@ -43,26 +42,8 @@ SEEN = {
 """What an engine shows of a scene besides."""
 RANDOM = "random-"
 """How the name of a scene begins whose cases are drawn."""
+TABLES = ("frame", f"{RANDOM}frame", "slide", f"{RANDOM}slide", "floor")
 DRAWN = ("aspect", "width_m", "half_cycles", "amplitude_g", "omega_over_p")
-LABELS = {
-    "frame": ("columns", "load", "amplitude_g", "omega", "phase"),
-    f"{RANDOM}frame": ("columns", "load", *DRAWN),
-    "slide": ("case",),
-    f"{RANDOM}slide": ("friction", *DRAWN),
-    "floor": ("floor", "rest_s"),
-}
-"""Columns of a scene's table before source ..."""
-MEASURED = {
-    "frame": ("exact", "right", "error"),
-    "slide": ("slips", "exact_slips", "slip_error_m", "verdict", "slip_error"),
-    "floor": ("carried",),
-}
-"""... and after what all have; drawn cases have those of their scene."""
-TYPES = {
-    **dict.fromkeys(("columns", "phase", "half_cycles", "slips", "exact_slips"), int),
-    "right": bool,
-}
-"""Of columns that hold no other numbers or words."""
 RIGHT, MISSED, THROWN_OFF = "right", "missed slip", "thrown off"
 """Verdicts on a slide, beside `WORDS`; see `engines.run.slide.LEAST_LIFT`."""
 
@@ -88,8 +69,8 @@ def _frames(sources: Sequence[Source], quick: bool) -> Iterator[Job]:
         for source in sources:
             # where in a step an impact falls costs per mille
             for phase, options in enumerate(_steps(source, case, 2 if quick else 4)):
-                values = columns, load, amplitude_g, omega, phase
-                labels = dict(zip(LABELS["frame"], values, strict=True))
+                labels = {"columns": columns, "load": load, "amplitude_g": amplitude_g}
+                labels |= {"omega": omega, "phase": phase}
                 yield _job("frame", labels, case, source, **options)
 
 
@@ -168,10 +149,7 @@ def exact_of(case: Question) -> Response:
 
 
 def measure(job: Job) -> Row:
-    """Return the summary, and how far the response is from the exact one of its scene.
-
-    Errors of peaks are relative, those of slips and places in metres, and nan where there is none.
-    """
+    """Return the summary, and how far the response is from the exact one of its scene."""
     response, case = ask(job), job.case
     scene = str(job.labels["scene"]).removeprefix(RANDOM)
     exact = exact_of(case)
@@ -186,7 +164,7 @@ def measure(job: Job) -> Row:
         slips = {"slips": len(response.slips), "exact_slips": len(exact.slips)}
         missed = _slip_error(response, exact)
         error = missed / max(map(abs, exact.slips), default=math.nan)
-        found = {"slip_error_m": missed, "slip_error": error, "verdict": _verdict(response, exact)}
+        found = {"slip_error_m": missed, "verdict": _verdict(response, exact), "slip_error": error}
         return {**row, **slips, **found, **seen}
     travel = float(case.motion.displacement(case.motion.duration))
     return {**row, "carried": 1.0 + _seen(response, "place_m") / travel, **seen}
@@ -208,10 +186,7 @@ def _verdict(response: Response, exact: Response) -> str:
 
 
 def _slip_error(response: Response, exact: Response) -> float:
-    """Return the largest error of a slip [m]; of a block that is held, how far it crept.
-
-    Where there are more slips than there should be, the longest count; nan where there are fewer.
-    """
+    """Return the largest error of a slip [m]; of a block that is held, how far it crept."""
     if response.outcome is Outcome.FAILED or len(response.slips) < len(exact.slips):
         return math.nan
     if not exact.slips:
@@ -221,19 +196,23 @@ def _slip_error(response: Response, exact: Response) -> float:
     return max(abs(one - other) for one, other in zip(longest, exact.slips, strict=True))
 
 
-def tabulate(rows: pd.DataFrame) -> Tables:
+def tabulate(rows: Tables) -> Tables:
     """Return the rows of each scene, and a line for each source that is built for it."""
     tables = {}
-    for name, labels in LABELS.items():
-        scene = name.removeprefix(RANDOM)
-        columns = ["scene", *labels, "source", *SHARED, *MEASURED[scene], *SEEN[scene]]
-        mine = rows[rows["scene"] == name].reindex(columns=columns)
-        mine = tables[name] = mine.astype({it: TYPES[it] for it in columns if it in TYPES})
-        keys = ["source", "floor"] if scene == "floor" else ["source"]
-        groups = built(mine).groupby(keys, sort=False)
-        lines = [dict(zip(keys, key, strict=True)) | SUMMED[scene](of) for key, of in groups]
-        tables[f"{name}-summary"] = pd.DataFrame(lines)
+    for name in TABLES:
+        tables[name] = mine = rows.get(name, pd.DataFrame())
+        tables[f"{name}-summary"] = summed(mine, name.removeprefix(RANDOM))
     return tables
+
+
+def summed(rows: pd.DataFrame, scene: str) -> pd.DataFrame:
+    """Return a line for each source that is built for a scene, from its rows."""
+    if rows.empty:
+        return rows
+    keys = ["source", "floor"] if scene == "floor" else ["source"]
+    groups = built(rows).groupby(keys, sort=False)
+    lines = [dict(zip(keys, key, strict=True)) | SUMMED[scene](of) for key, of in groups]
+    return pd.DataFrame(lines)
 
 
 def built(rows: pd.DataFrame) -> pd.DataFrame:
@@ -328,7 +307,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw the errors and run times of frames."""
-    from studies.drawing.sweep import draw_overview
+    from studies.drawing.rows import draw_overview
 
     lines = _engines_in(tables["frame-summary"]).rename(
         columns={"frames": "cases", "median_error": "median", "max_error": "max"}
@@ -356,16 +335,12 @@ slides test settings that were not tuned on them. A row says what an engine cann
 hours.""",
     sources=core_sources("default", "tuned", "landing"),
     quick="One frame and one slide, two offsets of the steps, three random cases of each.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if row["reason"] != Reason.UNAVAILABLE.name],
+    split="scene",
     captions={
         "frame-time": "Each engine and preset on frames: the median and the largest error of the "
         "peak, the number of wrong outcomes, and the run time of a case.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

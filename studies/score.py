@@ -19,25 +19,22 @@ from engines.settings import perhaps
 from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments
-from studies.kit.arguments import Out, Place
-from studies.kit.cluster import place_of
+from studies.kit.arguments import Out, Place, Running
 from studies.kit.jobs import Job, Question, Row, answer, unanswered
-from studies.kit.options import Running
-from studies.kit.run import makers_of, run
+from studies.kit.run import makers_of, place_of, run
 from studies.kit.say import duration, in_columns, one_line, out_of, part, say
 from studies.kit.store import FolderError, Store, check, engines_of, provenance_of
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.kit.tables import table_in
 from studies.measures import world
 from studies.measures.costs import joint
 from studies.measures.differences import summarize, with_reference
 from studies.measures.presets import engine_of, preset_of
 from studies.measures.published import PUBLISHED
-from studies.measures.verdicts import Verdict
 from studies.sources.registry import announce, presets_of, resolve
 
-MODEL, SWEEP, STEPS, EXTREMES, SCENES = (
-    f"score-{name}" for name in ("model", "sweep", "steps", "extremes", "scenes")
+MODEL, SWEEP, STEPS, EXTREMES = (
+    f"score-{name}" for name in ("model", "sweep", "steps", "extremes")
 )
 WRONG = "wrong"
 FURTHER = {"score-frame": "frame", "score-slide": "slide"}
@@ -48,12 +45,6 @@ NOISE = 1e-6
 """Relative change of a peak up to which two results are the same."""
 CASE = ["figure", "pulse", "excess_g", "aspect", "width_m", "omega_over_p"]
 """Columns that make the name of one of the paper's cases."""
-KNOWN = {
-    SWEEP: ("peak_ratio",),
-    STEPS: ("peak_ratio", "error"),
-    EXTREMES: ("peak_ratio", "error", "energy_growth", "slip_widths"),
-}
-"""Columns that a table has though none of its numbers may be known."""
 
 
 def uses_of(name: str) -> list[str]:
@@ -69,7 +60,6 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
         swept = [job for number, job in enumerate(swept) if number // len(uses) % 11 == 0]
     varied = [use for use in uses if preset_of(use) != AT_REST]
     along = [job for job in precision.jobs(varied, quick) if job.labels["table"] == precision.ALONG]
-    known = FURTHER.values()
     looked_at = dict.fromkeys([*uses, *(world.checked(engine_of(name)) for name in sources)])
     one = Question(system=world.BLOCK, motion=Still())
     tables = {
@@ -77,8 +67,10 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
         SWEEP: swept,
         STEPS: along,
         EXTREMES: stability.jobs(uses, quick),
-        SCENES: [job for job in scenes.jobs(uses, quick) if job.labels["scene"] in known],
     }
+    further = scenes.jobs(uses, quick)
+    for name, scene in FURTHER.items():
+        tables[name] = [job for job in further if job.labels["scene"] == scene]
     return [
         replace(job, labels={"part": name, **job.labels})
         for name, of_table in tables.items()
@@ -89,7 +81,7 @@ def jobs(sources: Sequence[str], quick: bool) -> list[Job]:
 def measure(job: Job) -> Row:
     """Return what a job's table has of it."""
     of = {MODEL: look, SWEEP: answer, STEPS: precision.measure, EXTREMES: stability.measure}
-    return {**of, SCENES: scenes.measure}[job.labels["part"]](job)
+    return of.get(job.labels["part"], scenes.measure)(job)
 
 
 def look(job: Job) -> Row:
@@ -108,27 +100,20 @@ def look(job: Job) -> Row:
 
 def model(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the lines of the model check, of all that was looked at."""
-    found = rows.loc[rows["part"] == MODEL, ["source", "lines"]].explode("lines").dropna()
+    found = rows[["source", "lines"]].explode("lines").dropna()
     columns = [*world.Line._fields[:4], "verdict"]
     lines = pd.DataFrame(found["lines"].tolist(), columns=columns)
     return lines.assign(source=found["source"].to_numpy())
 
 
-def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return the rows of each table, without the columns of others."""
-    found = {MODEL: model(rows)}
-    for name, known in KNOWN.items():
-        mine = rows[rows["part"] == name].drop(columns=["part", "table"], errors="ignore")
-        found[name] = mine[[it for it in mine if it in known or mine[it].notna().any()]]
-    tables = scenes.tabulate(rows[rows["part"] == SCENES].reindex(columns=[*{*rows, "scene"}]))
-    for name, scene in FURTHER.items():
-        if len(held := scenes.built(tables[scene])):
-            found[name] = held
-    whole = {"figure", "aspect", "runs", "impacts", "steps"}
-    return {
-        name: table.astype(dict.fromkeys(whole.intersection(table), int))
-        for name, table in found.items()
-    }
+def tabulate(rows: Tables) -> Tables:
+    """Return the rows of each table: of a scene those of what an engine is built for."""
+    tables = {}
+    for name, table in rows.items():
+        held = scenes.built(table) if name in FURTHER else table
+        if len(held):
+            tables[name] = held.drop(columns=["part", "table"], errors="ignore")
+    return tables | {MODEL: model(rows[MODEL])}
 
 
 def swept(tables: Tables) -> pd.DataFrame:
@@ -187,7 +172,7 @@ def summary(tables: Tables) -> pd.DataFrame:
             "largest error": part(line["max_error"]),
             "run time of a case": duration(line["wall_s"] / line["cases"]),
             "median errors, long to short steps": ", ".join(map(part, along.get(source, []))),
-            "extreme cases right": right(EXTREMES, "verdict", Verdict.GOOD.value),
+            "extreme cases right": right(EXTREMES, "verdict", stability.Verdict.GOOD.value),
             "slides right": right("score-slide", "verdict", "right"),
             "frames right": right("score-frame", "right", True),
         }
@@ -199,7 +184,7 @@ def right_of(tables: Tables, source: str, name: str, column: str, good: object) 
     if name not in tables:
         return "-"
     mine = tables[name]
-    mine = mine[(mine["source"] == source) & (mine[column] != Verdict.INVALID.value)]
+    mine = mine[(mine["source"] == source) & (mine[column] != stability.Verdict.INVALID.value)]
     return out_of((mine[column] == good).sum(), len(mine)) if len(mine) else "-"
 
 
@@ -216,7 +201,7 @@ def shown(tables: Tables) -> Tables:
         "Verdicts on extreme cases": stability.verdicts(extremes),
         "Failures in extreme cases": stability.failures(extremes)[stability.FAILURE],
         **{
-            f"In the scene of a {scene}": scenes.tabulate(tables[name])[f"{scene}-summary"]
+            f"In the scene of a {scene}": scenes.summed(tables[name], scene)
             for name, scene in FURTHER.items()
             if name in tables
         },
@@ -226,7 +211,7 @@ def shown(tables: Tables) -> Tables:
 def figures(tables: Tables) -> Figures:
     """Draw the errors of its presets over their run times, and their scores in extreme cases."""
     from studies.drawing.precision import draw_precision
-    from studies.drawing.stability import draw_scores
+    from studies.drawing.rows import draw_scores
 
     along = precision.work_precision(tables[STEPS])
     asked = (stability.scores(tables[EXTREMES], each) for each in ("engine", "case"))
@@ -241,13 +226,9 @@ STUDY = Study(
     name="score",
     question="What does one engine predict, and did it get worse?",
     help="The paper's cases, errors along the step, extreme cases, slides and frames.",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     needed=lambda rows: [row for row in rows if row["part"] in (MODEL, SWEEP)],
+    split="part",
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 
 

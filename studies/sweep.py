@@ -7,25 +7,22 @@ from dataclasses import asdict, dataclass
 from typing import Annotated
 
 import pandas as pd
-from cyclopts import Parameter
 
 from engines.factors import BEST
 from studies.cases.paper import sweep_cases
+from studies.kit.arguments import EffortOptions
 from studies.kit.arguments import figures as some_figures
 from studies.kit.jobs import Job, Question
-from studies.kit.options import EffortOptions
 from studies.kit.say import capital, listed, out_of, part
-from studies.kit.study import Figures, Study, Tables
-from studies.measures.claims import claim, table_of
+from studies.kit.study import Figures, Study, Tables, claim, stages
 from studies.measures.differences import summarize, with_reference
-from studies.measures.presets import engine_of, in_order, in_words, preset_of
+from studies.measures.presets import engine_of, in_order, look_of, preset_of
 from studies.measures.wrongness import KINDS
 from studies.sources.registry import core_sources
 
 WHICH = "Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by default."
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options(EffortOptions):
     """Which figures, and how finely the sources step."""
@@ -54,7 +51,7 @@ def jobs(sources: Iterable[str], quick: bool, options: Options) -> list[Job]:
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows, a line for each figure and source, and the paper's conclusions."""
     compared = with_reference(rows)
-    found = table_of([test(compared) for test in CONCLUSIONS])
+    found = pd.DataFrame([test(compared) for test in CONCLUSIONS])
     return {"sweep": rows, "summary": summarize(compared), "findings": found}
 
 
@@ -91,7 +88,7 @@ def finding(tables: Tables) -> str:
         known = presets.groupby("preset").agg({"right": "min", "max": "max"}).loc[ends]
         least = ["all" if n == cases else f"at least {n}" for n in known["right"]]
         least[0] += f"{' of' * (least[0] != 'all')} {cases} outcomes"
-        words = listed(f"{n} {in_words(name)}" for n, name in zip(least, ends, strict=True))
+        words = listed(f"{n} {look_of(name).words}" for n, name in zip(least, ends, strict=True))
         errors = listed(map(part, known["max"]))
         return f"Engines predict {words}; their peaks err by up to {errors}."
     others = lines[lines["source"] != "exact"].sort_values("agree", kind="stable")
@@ -115,7 +112,8 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw figures 6 to 9 of a few sources; engines with several presets as an overview."""
-    from studies.drawing.sweep import draw_overview, draw_sweep
+    from studies.drawing.rows import draw_overview
+    from studies.drawing.sweep import draw_sweep
 
     compared = with_reference(tables["sweep"])
     lines = preset_table(over_all(tables["summary"]))
@@ -241,11 +239,6 @@ default sources. To continue an interrupted run, give the same command again. Wr
 summary.csv, findings.csv, findings.txt and a picture of each figure.""",
     sources=("exact", "housner", "modified", "onset-matched", *core_sources()),
     options=Options,
-    jobs=jobs,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     rows="sweep",
     captions={
         "overview": "Each engine and preset: the median and the largest error of the peak, the "
@@ -253,5 +246,6 @@ summary.csv, findings.csv, findings.txt and a picture of each figure.""",
         "figure": "Largest rotation against the frequency of the pulse. Marks in the band: the "
         "source overturns the block. Lowest panels: the errors.",
     },
+    **stages(jobs, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -10,27 +10,17 @@ from typing import Annotated
 
 import numpy as np
 import pandas as pd
-from cyclopts import Parameter
 
 from analytic import simulate
 from analytic.response import Outcome
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import Count, one_of
+from studies.kit.arguments import Count, EffortOptions, one_of
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.options import EffortOptions
 from studies.kit.say import out_of, part
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
-from studies.measures.halving import (
-    BOUNDED,
-    CALIBRATE,
-    MOST_TRUSTED,
-    TEST,
-    estimate_of,
-    factors,
-    halved,
-)
+from studies.measures.halving import BOUNDED, MOST_TRUSTED, USES, estimate_of, factors, halved
 from studies.measures.presets import titled
 from studies.measures.wrongness import counted, wrong_in
 from studies.sources.registry import core_sources
@@ -39,7 +29,6 @@ CASES, TESTS = {False: (500, 100), True: (300, 20)}, (100, 10)
 """Random cases, in full and quickly: without --halves and with it, and of those that test."""
 
 
-@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Options(EffortOptions):
     """Which random cases, and whether at half the step, too.
@@ -84,12 +73,12 @@ def _job(labels: Row, case: RandomCase, source: str, settings: Row) -> Job:
 
 def _with_halves(own: Mapping[str, Row], cases: int, tests: int, options: Options) -> list[Job]:
     found = []
-    for use, seed, count in ((TEST, options.seed, tests), (CALIBRATE, options.seed + 1, cases)):
-        drawn = draw(seed, options.scene)
+    for number, (use, count) in enumerate(zip(USES, (tests, cases), strict=True)):
+        drawn = draw(options.seed + number, options.scene)
         rocked = (it for it in drawn if simulate(it.block, it.motion).outcome is Outcome.ROCKED)
-        for number, case in enumerate(islice(rocked, count)):
+        for place, case in enumerate(islice(rocked, count)):
             for source, settings in own.items():
-                job = _job({"set": use}, replace(case, case=number), source, settings)
+                job = _job({"set": use}, replace(case, case=place), source, settings)
                 if (finer := halved(job)) is None:
                     words = "with --halves it must be an engine with steps that can be halved"
                     raise BadInputError(f"--sources is {source!r}; {words}")
@@ -107,10 +96,7 @@ def tabulate(rows: pd.DataFrame) -> Tables:
 
 
 def beside_errors(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows at the whole step, each with its estimate, and with the error over that.
-
-    The last is 0 where there is no error to speak of, nan unless both rocked.
-    """
+    """Return the rows at the whole step, each with its estimate, and with the error over that."""
     whole = with_reference(rows[rows["half"] == 0]).reset_index(drop=True)
     finer = rows[rows["half"] == 1].to_dict("records")
     pairs = zip(whole.to_dict("records"), finer, strict=True)
@@ -174,7 +160,7 @@ def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
 
 def figures(tables: Tables) -> Figures:
     """Draw the errors in bands of the sensitivity; there is no figure of factors."""
-    from studies.drawing.validate import draw_conditioning
+    from studies.drawing.rows import draw_conditioning
 
     return {"validate": draw_conditioning(tables["errors"])} if "errors" in tables else {}
 
@@ -190,14 +176,10 @@ same engine at half the step, and writes estimate.csv, estimates.csv and factors
     sources=core_sources(),
     options=Options,
     quick="100 random cases; with --halves 20, and 10 to test the factors.",
-    jobs=jobs,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "validate": "Errors of random cases in bands of the sensitivity S: for each engine the "
         "median, the middle half and the extremes.",
     },
+    **stages(jobs, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import BOTH, DEFAULT, factor, level, moving_base
 from engines.mujoco.build import MujocoSettings, MujocoWorld, script
 
@@ -58,49 +58,36 @@ ORIGINAL: dict[str, Any] = {"damping": None, "sliding_damping": None, "stiffness
 REFERENCE, MODELING = "XMLreference.rst of MuJoCo 4.0.0", "modeling.rst of MuJoCo 4.0.0"
 GEOM = f"{REFERENCE}, body/geom"
 
-DOCUMENTED = (
-    Citation("step", "timestep 0.002", f"{REFERENCE}, option"),
-    Citation("integrator", "Euler", f"{REFERENCE}, option"),
-    Citation("solver", "Newton, iterations 100, tolerance 1e-8", f"{REFERENCE}, option"),
-    Citation("cone", "pyramidal, impratio 1", f"{REFERENCE}, option"),
-    Citation("noslip", "noslip_iterations 0", f"{REFERENCE}, option"),
-    Citation("sleeping", "sleep disable", f"{REFERENCE}, option/flag"),
-    Citation("friction", "1 0.005 0.0001, as here, of a pair the larger", GEOM),
-    Citation("friction", "condim 3: sliding alone, neither spin nor roll", GEOM),
-    Citation("margin", "0", GEOM),
-    Citation(
-        "contact", "solref 0.02 1, solimp 0.9 0.95 0.001 0.5 2", f"{MODELING}, Solver parameters"
-    ),
-    Citation("contact", "its inertia by an estimate: diagexact off", f"{REFERENCE}, option/flag"),
-    Citation(
-        "without effect",
-        "refsafe, island and multiccd on, ls_iterations 50, ls_tolerance 0.01; the warm start's "
-        "is below 1e-3",
-        f"{REFERENCE}, option, option/flag",
-    ),
-    Citation(
-        "floor", "a regular body, weld to a mocap body: better-behaved", f"{MODELING}, MoCap bodies"
-    ),
-)
+DOCUMENTED = citations(f"""
+step | timestep 0.002 | {REFERENCE}, option
+integrator | Euler | {REFERENCE}, option
+solver | Newton, iterations 100, tolerance 1e-8 | {REFERENCE}, option
+cone | pyramidal, impratio 1 | {REFERENCE}, option
+noslip | noslip_iterations 0 | {REFERENCE}, option
+sleeping | sleep disable | {REFERENCE}, option/flag
+friction | 1 0.005 0.0001, as here, of a pair the larger | {GEOM}
+friction | condim 3: sliding alone, neither spin nor roll | {GEOM}
+margin | 0 | {GEOM}
+contact | solref 0.02 1, solimp 0.9 0.95 0.001 0.5 2 | {MODELING}, Solver parameters
+contact | its inertia by an estimate: diagexact off | {REFERENCE}, option/flag
+without effect | refsafe, island and multiccd on, ls_iterations 50, ls_tolerance 0.01; the warm
+    start's is below 1e-3 | {REFERENCE}, option, option/flag
+floor | a regular body, weld to a mocap body: better-behaved | {MODELING}, MoCap bodies
+""")
 """What the library's documentation says of all that its defaults decide."""
 
-RECOMMENDED = (
-    Citation("integrator", "implicitfast", f"{MODELING}, Tuning defaults"),
-    Citation("cone", "elliptic, impratio 10", f"{MODELING}, Tuning defaults"),
-    Citation(
-        "contact, weld", "solref[0] 0.004 to 0.01 s, at least 2 timesteps", f"{MODELING}, the same"
-    ),
-    Citation("solver", "Newton, tolerance 1e-10", f"{MODELING}, the same"),
-)
+RECOMMENDED = citations(f"""
+integrator | implicitfast | {MODELING}, Tuning defaults
+cone | elliptic, impratio 10 | {MODELING}, Tuning defaults
+contact, weld | solref[0] 0.004 to 0.01 s, at least 2 timesteps | {MODELING}, the same
+solver | Newton, tolerance 1e-10 | {MODELING}, the same
+""")
 """What it recommends for rigid contact in place of its defaults, which it does not."""
 
-PASTED = (
-    Citation(
-        "contact",
-        "solref in the direct form, -0.01/dt² and -1/dt; solimp 0.9999: rigid, and damped at once",
-        f"{MODELING}, Solver parameters; the numbers measured here",
-    ),
-)
+PASTED = citations(f"""
+contact | solref in the direct form, -0.01/dt² and -1/dt; solimp 0.9999: rigid, and damped at once
+    | {MODELING}, Solver parameters; the numbers measured here
+""")
 
 FACTORS = (
     factor(
@@ -155,11 +142,8 @@ FACTORS = (
     ),
     moving_base("surfacevel", "weld", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default", settings=MujocoSettings(), step_s=2e-3, documented=DOCUMENTED, frame="world"
-)
+NAIVE = default(MujocoSettings(), 2e-3, DOCUMENTED)
 
 ENGINE = Engine(
     name="mujoco",
@@ -168,6 +152,7 @@ ENGINE = Engine(
     install="rocking",
     build=MujocoWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),
@@ -182,12 +167,9 @@ ENGINE = Engine(
         ),
         NAIVE.pasted(*PASTED, geom_reference=(0.01, 1.0), impedance=(0.9999, 0.9999, 0.001)),
         Preset(name="tuned", settings=TUNED, step=2.5e-4, stacked=STACKED, sliding=SLIDING),
-        Preset(
-            name="landing",
-            settings=LANDING,
-            stepping=Stepping.LANDING,
-            helped_by={
-                Help.STEPS: None,
+        landing(
+            LANDING,
+            {
                 Help.PHASES: {"by_phase": False},
                 Help.REFLECTION: {"reflection": False},
                 Help.MARGIN: {"carry": None, "preload": False},

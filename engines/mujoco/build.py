@@ -225,7 +225,8 @@ def _body(scene: Scene, number: int, s: MujocoSettings, held: str) -> str:
     elif s.geometry == "box" or scene.layout.rests(number):
         shapes[_named("box", number)] = f'type="box" size="{_row(half_size(body))}"'
     geoms = "".join(f'<geom name="{name}" {shape} {held}/>' for name, shape in shapes.items())
-    inertial = f'<inertial pos="0 0 0" mass="{body.mass}" diaginertia="{_row(body.inertia)}"/>'
+    heavy = f'pos="{body.offset or 0} 0 0" mass="{body.mass}"'
+    inertial = f'<inertial {heavy} diaginertia="{_row(body.inertia)}"/>'
     joints = PLANAR_JOINTS if s.planar else "<freejoint/>"
     return f'<body pos="{x} 0 {z}">{joints}{inertial}{geoms}</body>'
 
@@ -349,6 +350,7 @@ class MujocoWorld:
         }
         for number, body in enumerate(scene.bodies, 1 + (scene.frame == "world")):
             pairs[f"mass {number}"] = (body.mass, model.body_mass[number])
+            pairs[f"offset {number}"] = (body.offset, model.body_ipos[number, 0])
             found = model.body_inertia[number]
             pairs |= {f"inertia {number} {i}": (body.inertia[i], found[i]) for i in range(3)}
         pairs |= {name: self._read_option(name) for name in OPTIONS}

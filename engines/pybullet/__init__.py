@@ -3,9 +3,9 @@
 from dataclasses import replace
 from typing import Any
 
-from engines.declaration import Citation, Engine, Help, Preset, Stepping
+from engines.declaration import Engine, Help, Preset, citations, default, landing
 from engines.factors import BEST, BOTH, DEFAULT, factor, level, moving_base
-from engines.pybullet.build import LIBRARY_STEP_S, BulletSettings, BulletWorld, script
+from engines.pybullet.build import LIBRARY_STEP_S, BulletSettings, BulletWorld
 
 TUNED = BulletSettings(
     geometry="corners",
@@ -34,47 +34,41 @@ READ = "of pybullet 3.2.7"
 SERVER = "PhysicsServerCommandProcessor.cpp"
 EXAMPLE = "pybullet_examples/constraint.py, pybullet_data/cube_small.urdf"
 
-DOCUMENTED = (
-    Citation("step", "240 Hz: best to leave it to the default", f"{GUIDE}, setTimeStep"),
-    Citation("iterations", "numSolverIterations 50", f"getPhysicsEngineParameters {READ}"),
-    Citation("residual", "solverResidualThreshold 1e-7", f"{GUIDE}, setPhysicsEngineParameter"),
-    Citation("kept gap", "contactBreakingThreshold 0.02", f"{GUIDE}, setPhysicsEngineParameter"),
-    Citation("friction cone", "cone is default", f"{GUIDE}, setPhysicsEngineParameter"),
-    Citation("friction anchor", "disabled by default", f"{GUIDE}, changeDynamics"),
-    Citation("damping", "linear and angular, 0.04 by default", f"{GUIDE}, changeDynamics"),
-    Citation(
-        "friction",
-        "0.5, of a pair the product: 0.5 on an example's floor of 1, 0.25 on another; here 1.0",
-        f"getDynamicsInfo, btManifoldResult.cpp {READ}",
-    ),
-    Citation("contact", "contactERP 0.08, contactSlop 1e-5", f"{SERVER} {READ}"),
-    Citation("restitution", "0.0", f"getDynamicsInfo {READ}"),
-    Citation("sleeping", "off but for URDF_ENABLE_SLEEPING", f"{GUIDE}, changeDynamics"),
-    Citation("floor", "better constraints than position or velocity", f"{GUIDE}, createConstraint"),
-    Citation("floor", "JOINT_FIXED, changeConstraint, maxForce 50 on 0.1 kg", f"{EXAMPLE} {READ}"),
-    Citation("floor", "of what it is off, erp 0.2 a step", f"btContactSolverInfo.h {READ}"),
-    Citation(
-        "without effect",
-        "frictionERP 0.2, warmStartingFactor 0.1, restitutionVelocityThreshold 0.2, "
-        "collisionMargin 0.001, speeds up to 100",
-        f"{SERVER}, btContactSolverInfo.h, btMultiBody.cpp {READ}",
-    ),
-)
+DOCUMENTED = citations(f"""
+step | 240 Hz: best to leave it to the default | {GUIDE}, setTimeStep
+iterations | numSolverIterations 50 | getPhysicsEngineParameters {READ}
+residual | solverResidualThreshold 1e-7 | {GUIDE}, setPhysicsEngineParameter
+kept gap | contactBreakingThreshold 0.02 | {GUIDE}, setPhysicsEngineParameter
+friction cone | cone is default | {GUIDE}, setPhysicsEngineParameter
+friction anchor | disabled by default | {GUIDE}, changeDynamics
+damping | linear and angular, 0.04 by default | {GUIDE}, changeDynamics
+friction | 0.5, of a pair the product: 0.5 on an example's floor of 1, 0.25 on another; here 1.0 |
+    getDynamicsInfo, btManifoldResult.cpp {READ}
+contact | contactERP 0.08, contactSlop 1e-5 | {SERVER} {READ}
+restitution | 0.0 | getDynamicsInfo {READ}
+sleeping | off but for URDF_ENABLE_SLEEPING | {GUIDE}, changeDynamics
+floor | better constraints than position or velocity | {GUIDE}, createConstraint
+floor | JOINT_FIXED, changeConstraint, maxForce 50 on 0.1 kg | {EXAMPLE} {READ}
+floor | of what it is off, erp 0.2 a step | btContactSolverInfo.h {READ}
+without effect | frictionERP 0.2, warmStartingFactor 0.1, restitutionVelocityThreshold 0.2,
+    collisionMargin 0.001, speeds up to 100 | {SERVER}, btContactSolverInfo.h, btMultiBody.cpp
+    {READ}
+""")
 """Where the library's documentation, or the library itself, says what its defaults decide."""
 
-RECOMMENDED = (
-    Citation("iterations", "best left at 50; more, for accuracy", "bullet3 issue 3081, its author"),
-    Citation("iterations", "150, its own environment", "kuka_diverse_object_gym_env.py"),
-    Citation("damping", "0, its own environments", "cartpole_bullet.py, quadruped_base.py"),
-)
+RECOMMENDED = citations("""
+iterations | best left at 50; more, for accuracy | bullet3 issue 3081, its author
+iterations | 150, its own environment | kuka_diverse_object_gym_env.py
+damping | 0, its own environments | cartpole_bullet.py, quadruped_base.py
+""")
 """What it recommends for accurate contact: no text gives a number, its environments do."""
 
-PASTED = (
-    Citation("kept gap", "contactBreakingThreshold 0.001, before any shape", "measured here"),
-    Citation("iterations", "100, and a residual of 0: to their end", "measured here"),
-    Citation("damping", "0, its own environments", "cartpole_bullet.py, quadruped_base.py"),
-    Citation("floor", "a box: on GEOM_PLANE a box turns and creeps", "measured here"),
-)
+PASTED = citations("""
+kept gap | contactBreakingThreshold 0.001, before any shape | measured here
+iterations | 100, and a residual of 0: to their end | measured here
+damping | 0, its own environments | cartpole_bullet.py, quadruped_base.py
+floor | a box: on GEOM_PLANE a box turns and creeps | measured here
+""")
 
 DRAG = "drag that nobody asked for"
 SLIDES = "held out of its margin with contact ERP 1, a hull slides off its pivot"
@@ -145,16 +139,8 @@ FACTORS = (
     factor("friction", level("0.5, the library's own", (DEFAULT,), SMOOTH, friction=0.5)),
     moving_base("velocity", "constraint", "position"),
 )
-"""What its contact can be set to."""
 
-NAIVE = Preset(
-    name="default",
-    settings=BulletSettings(),
-    step_s=LIBRARY_STEP_S,
-    documented=DOCUMENTED,
-    frame="world",
-    own={"friction": 0.5},
-)
+NAIVE = default(BulletSettings(), LIBRARY_STEP_S, DOCUMENTED, friction=0.5)
 
 ENGINE = Engine(
     name="pybullet",
@@ -162,6 +148,7 @@ ENGINE = Engine(
     library="pybullet",
     build=BulletWorld,
     stacks=True,
+    offsets=True,
     presets=(
         NAIVE,
         NAIVE.at_rest(),
@@ -175,21 +162,15 @@ ENGINE = Engine(
             damping=0.0,
         ),
         Preset(name="tuned", settings=TUNED, step=5e-4, stacked=STACKED),
-        Preset(
-            name="landing",
-            settings=LANDING,
-            stepping=Stepping.LANDING,
+        landing(
+            LANDING,
+            {Help.PHASES: {"by_phase": False}, Help.MARGIN: {"gap_by_step": False}},
             # with fewer, the impulses of an impact have not settled among all contacts when a step
             # ends: some bodies meet a step late, and the peak is up to 22 % too large
             stacked={**STACKED, "iterations": 3000},
-            helped_by={
-                Help.STEPS: None,
-                Help.PHASES: {"by_phase": False},
-                Help.MARGIN: {"gap_by_step": False},
-            },
         ),
     ),
     core=True,
-    script=script,
+    script=BulletWorld.script,
     factors=FACTORS,
 )

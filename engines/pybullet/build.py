@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from threading import Lock
 from typing import Any
 
-import numpy as np
-
-from engines.parts import imported, iterations_for, silence, yaw_of
+from engines.parts import Adapter, imported, iterations_for, silence, yaw_of
 from engines.run.export import Notes
-from engines.scene import Scene
-from engines.settings import check, disagreement, given, setting
+from engines.scene import Body, Scene
+from engines.settings import Settings, disagreement, given, setting
 from engines.shapes import floor_half_size, half_size, hull_points, touching_spheres
-from engines.world import ContactPhase, FloatArray, Moment, Pose, Script, Step
+from engines.world import ContactPhase, FloatArray, Script, Step
 
 LIBRARY_STEP_S = 1.0 / 240.0
 """The library's own time step [s]."""
@@ -59,7 +57,7 @@ idle: list[int] = []
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BulletSettings:
+class BulletSettings(Settings):
     """Settings of PyBullet, by default its own; None leaves a setting to the library."""
 
     # of corners, small spheres where those at the base are; of a hull, a convex mesh of all eight
@@ -104,11 +102,8 @@ class BulletSettings:
     contact_stiffness: float | None = setting(above=0.0, beside=("contact_damping",))
     contact_damping: float | None = setting(above=0.0)
 
-    def __post_init__(self) -> None:
-        check(self)
 
-
-class BulletWorld:
+class BulletWorld(Adapter):
     """Bodies on a base in a PyBullet client that no other run uses meanwhile.
 
     The base is a multibody without mass, whether it moves or not, if no constraint moves it: of
@@ -116,18 +111,17 @@ class BulletWorld:
     rigid body the response to the mirrored motion is not the mirror image.
     """
 
-    moment = Moment.MIDDLE
+    library = "pybullet"
+    called = "p"
+    without = ("physicsClientId",)
+    base_x_m = 0.0
 
-    def __init__(
-        self, scene: Scene, settings: BulletSettings, dt_s: float, library: Any = None
-    ) -> None:
-        self._s, self._scene, self._ordinary = settings, scene, dt_s
+    def _build(self, scene: Scene, dt_s: float) -> None:
+        self._p, self._ordinary = self._library, dt_s
         self._own, self._client = taken()
-        self._p = self._own if library is None else library
-        self._moving = scene.frame == "world"
-        self._constrained = self._moving and settings.floor == "constraint"
-        self.holder, self._due, self._lag, self.base_x_m = -1, 0.0, 0.0, 0.0
-        self._dt: float | None = None
+        self._constrained = self._way == "constraint"
+        self.lag_m = 0.0 if self._constrained else None
+        self.holder, self._due, self._offset = -1, 0.0, scene.bodies[0].offset
         self._phase: ContactPhase | None = None
         with held_for_all:
             self._set_engine()
@@ -138,7 +132,6 @@ class BulletWorld:
                 held = self.base, -1, -1, -1, self._p.JOINT_FIXED, NOWHERE, NOWHERE, self.ground
                 self.holder = self._p.createConstraint(*held, physicsClientId=self._client)
             self._set_out()
-        self._state = np.zeros((len(self.bodies), len(Pose._fields)))
 
     def _call(self, name: str, **arguments: Any) -> Any:
         """Call a function of the library in this world's client."""
@@ -199,14 +192,18 @@ class BulletWorld:
         """Make a body, of a shape of its own."""
         p, s, scene = self._p, self._s, self._scene
         body = scene.bodies[number]
+        left = -body.offset  # the library has a body where its mass is
         if s.geometry == "box" or scene.layout.rests(number):
-            half = half_size(body)
-            shape = self._call("createCollisionShape", shapeType=p.GEOM_BOX, halfExtents=half)
+            box: dict[str, Any] = {"shapeType": p.GEOM_BOX, "halfExtents": half_size(body)}
+            if body.offset:
+                box["collisionFramePosition"] = (left, 0.0, 0.0)
+            shape = self._call("createCollisionShape", **box)
         elif s.geometry == "hull":
-            points = hull_points(body)
+            points = [(x + left, y, z) for x, y, z in hull_points(body)]
             shape = self._call("createCollisionShape", shapeType=p.GEOM_MESH, vertices=points)
         else:
             corners = touching_spheres(scene, number, self._radius, planar=s.planar)
+            corners = [(x + left, y, z) for x, y, z in corners]
             shape = self._call(
                 "createCollisionShapeArray",
                 shapeTypes=[p.GEOM_SPHERE] * len(corners),
@@ -227,7 +224,7 @@ class BulletWorld:
                 "lateralFriction": s.friction,
                 # without its mass in the same call, a block in maximal coordinates becomes NaN
                 "mass": body.mass,
-                "localInertiaDiagonal": body.inertia if s.exact_inertia else None,
+                "localInertiaDiagonal": body.inertia if self._exact(body) else None,
                 "linearDamping": s.damping,
                 "angularDamping": s.damping,
                 "restitution": s.restitution,
@@ -240,6 +237,10 @@ class BulletWorld:
                 self._change(self.base, base)
             faults.append(self._read_back(number, wanted))
         return next(filter(None, faults), "")
+
+    def _exact(self, body: Body) -> bool:
+        """Say whether a body is given its moments of inertia; a shape's are those of even mass."""
+        return self._s.exact_inertia or not body.is_homogeneous
 
     def _change(self, body: int, wanted: Mapping[str, Any]) -> None:
         anchor = {"frictionAnchor": 1} if self._s.friction_anchor else {}
@@ -258,7 +259,7 @@ class BulletWorld:
             "friction of the base": (1.0, base[1]),
             "numSolverIterations": (self._iterations, engine["numSolverIterations"]),
         }
-        if s.exact_inertia:
+        if self._exact(body):
             pairs |= {f"inertia {i}": (body.inertia[i], block[2][i]) for i in range(3)}
         if s.multibody:
             # a body in maximal coordinates takes them, too, but reads zeros
@@ -280,7 +281,7 @@ class BulletWorld:
             p.resetBasePositionAndOrientation(number, place, UPRIGHT, physicsClientId=client)
         p.stepSimulation(physicsClientId=client)
         for number, body in zip(self.bodies, bodies, strict=True):
-            at, half = body.at, 0.5 * body.at.theta
+            at, half = body.mass_at, 0.5 * body.at.theta
             turned, place = (0.0, math.sin(half), 0.0, math.cos(half)), (at.x, 0.0, at.z)
             velocity, rate = (at.velocity_x, 0.0, at.velocity_z), (0.0, at.rate, 0.0)
             p.resetBasePositionAndOrientation(number, place, turned, physicsClientId=client)
@@ -293,7 +294,7 @@ class BulletWorld:
             erp = self._corrected(step) if self._s.by_phase else {}
             p.setPhysicsEngineParameter(fixedTimeStep=step.dt_s, **erp, physicsClientId=client)
             self._dt, self._phase = step.dt_s, step.phase
-        if self._moving:
+        if self._way:
             self._move_base(step)
         p.setGravity(step.pull_x, 0.0, step.pull_z, client)
         p.stepSimulation(client)
@@ -331,25 +332,26 @@ class BulletWorld:
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
         p, client, moved, raised = self._p, self._client, 0.0, 0.0
-        if self._moving:
+        if self._way:
             (moved, _, z), _ = p.getBasePositionAndOrientation(self.base, client)
             raised = z - self.ground[2]
-            self.base_x_m, self._lag = moved, max(self._lag, abs(moved - self._due))
+            self.base_x_m = moved
+            if self._constrained:
+                self.lag_m = max(self.lag_m, abs(moved - self._due))
         for row, body in enumerate(self.bodies):
             (x, _, z), q = p.getBasePositionAndOrientation(body, client)
             rate = p.getBaseVelocity(body, client)[1][1]
-            self._state[row] = x - moved, z - raised, 2.0 * math.atan2(q[1], q[3]), rate
+            theta = 2.0 * math.atan2(q[1], q[3])
+            if self._offset:
+                x, z = x - self._offset * math.cos(theta), z + self._offset * math.sin(theta)
+            self._state[row] = x - moved, z - raised, theta, rate
         return self._state
-
-    @property
-    def lag_m(self) -> float | None:
-        """How far a held base was from where it should have been; see `engines.world.World`."""
-        return self._lag if self._constrained else None
 
     def fault(self) -> str:
         """Say which setting was not taken, or that the step is not the one that was set."""
         engine = self._own.getPhysicsEngineParameters(physicsClientId=self._client)
-        return self._fault or disagreement({"fixedTimeStep": (self._dt, engine["fixedTimeStep"])})
+        step = {"fixedTimeStep": (self._dt or None, engine["fixedTimeStep"])}
+        return super().fault() or disagreement(step)
 
     def close(self) -> None:
         """Empty the client for the next run; a reset keeps the gap and the step: put them back."""
@@ -361,6 +363,36 @@ class BulletWorld:
                 physicsClientId=self._client,
             )
         idle.append(self._client)
+
+    def _script(self, notes: Notes, way: str) -> Script:
+        notes.name(floor=self.shapes[0], base=self.base, shape=self.shapes[1:])
+        moves = bool(way)
+        if way == "constraint":
+            notes.name(holder=self.holder)
+        there = f"[base_x, 0.0, {self.ground[2]!r}]"
+        move = {
+            "constraint": f"p.changeConstraint(holder, {there}, maxForce={self.most_force!r})",
+            "velocity": "p.resetBaseVelocity(base, [base_velocity, 0.0, 0.0])",
+            "position": f"p.resetBasePositionAndOrientation(base, {there}, {UPRIGHT})",
+        }.get(way, "")
+        at = "p.getBasePositionAndOrientation({})[0][0]"
+        said = Script(
+            imports=("import pybullet as p",),
+            settings=(
+                f"p.setTimeStep({self._ordinary!r})",
+                *notes.quoted("Parameter", "Shape", "createMultiBody", "changeDynamics"),
+            ),
+            build=("p.connect(p.DIRECT)", *notes.lines(), "p.setTimeStep(DT)"),
+            step=(*[move] * moves, "p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
+            pose=(
+                "q = p.getBasePositionAndOrientation(bodies[number])[1]",
+                "theta = 2.0 * math.atan2(q[1], q[3])",
+                "rate = p.getBaseVelocity(bodies[number])[1][1]",
+            ),
+            place=at.format("bodies[0]") + f" - {at.format('base')}" * moves,
+        )
+        self.close()
+        return said
 
 
 def taken() -> tuple[Any, int]:
@@ -377,38 +409,3 @@ def taken() -> tuple[Any, int]:
     if renderer >= 0:
         p.unloadPlugin(renderer, physicsClientId=client)
     return p, client
-
-
-def script(scene: Scene, settings: BulletSettings, dt_s: float) -> Script:
-    """Return a scene as calls of PyBullet; see `engines.run.export`."""
-    notes = Notes(without=("physicsClientId",))
-    world = BulletWorld(scene, settings, dt_s, notes.of(imported("pybullet"), "p"))
-    notes.name(floor=world.shapes[0], base=world.base, shape=world.shapes[1:])
-    notes.name_bodies(world.bodies)
-    moves = scene.frame == "world"
-    if moves and settings.floor == "constraint":
-        notes.name(holder=world.holder)
-    there = f"[base_x, 0.0, {world.ground[2]!r}]"
-    move = {
-        "constraint": f"p.changeConstraint(holder, {there}, maxForce={world.most_force!r})",
-        "velocity": "p.resetBaseVelocity(base, [base_velocity, 0.0, 0.0])",
-        "position": f"p.resetBasePositionAndOrientation(base, {there}, {UPRIGHT})",
-    }[settings.floor]
-    at = "p.getBasePositionAndOrientation({})[0][0]"
-    said = Script(
-        imports=("import pybullet as p",),
-        settings=(
-            f"p.setTimeStep({dt_s!r})",
-            *notes.quoted("Parameter", "Shape", "createMultiBody", "changeDynamics"),
-        ),
-        build=("p.connect(p.DIRECT)", *notes.lines(), "p.setTimeStep(DT)"),
-        step=(*[move] * moves, "p.setGravity(pull_x, 0.0, pull_z)", "p.stepSimulation()"),
-        pose=(
-            "q = p.getBasePositionAndOrientation(bodies[number])[1]",
-            "theta = 2.0 * math.atan2(q[1], q[3])",
-            "rate = p.getBaseVelocity(bodies[number])[1][1]",
-        ),
-        place=at.format("bodies[0]") + f" - {at.format('base')}" * moves,
-    )
-    world.close()
-    return said

@@ -1,48 +1,38 @@
 """Steps that end on what happens: what a landing preset does to an engine, and why it may.
 
 **The trouble.** An engine takes velocities and contact impulses once a step. A block that falls
-onto its free corner does so somewhere within a step, and the engine sees it at the end: the corner
-has gone too deep, or is stopped too early. How far is a matter of chance, and the error, of first
-order in the step, is as large as the step however good the contact is. Peaks before the first
-impact are a hundred times better than those after it.
+onto its free corner does so somewhere within a step, and the engine sees it at the end: an error of
+first order in the step, however good the contact is. Peaks before the first impact are a hundred
+times better than those after it.
 
-**The remedy.** A program that steps an engine may choose how long each step is. So the steps are
-chosen to end where something happens:
+**The remedy.** Steps are chosen to end where something happens:
 
 - *impacts*: from the last two states, the time until the free corner meets the base is a root of a
   parabola (`until_impact`). Each step then covers half of the way that is left (`APPROACH`), so
-  that the contact about which the block turns never falls out of reach of the next step, until the
-  rest is a millionth of an ordinary step. A few steps that short go through the impact (`STRIKE`):
-  gravity has no time to act in them, the contact alone does, until the rate has settled. The first
-  step after is short, as a contact that has just taken all velocity out of its point lets that rise
-  by the square of the step;
-- *uplifts*: a block at rest lifts where the base's acceleration exceeds g tan(alpha). Those times
-  (`steps.timetable`) are known of the base's motion; a step ends on each, and those before it come
-  slowly, for a sudden change of step would let go of a corner;
+  that the pivot never falls out of reach of the next step, until the rest is a millionth of an
+  ordinary step. A few steps that short go through the impact (`STRIKE`): gravity has no time to act
+  in them, the contact alone does, until the rate has settled. The first step after is short;
+- *uplifts*: a block at rest lifts where the base's acceleration exceeds g tan(alpha). A step ends
+  on each of those times (`steps.timetable`), and those before it come slowly;
 - *corners of the motion*: a step ends where the base's acceleration has a corner or a jump.
 
-Between them steps are ordinary: even parts of what is left, fine enough for a swing (an eighth of
-1/p at least) and for a load. The velocity of a leapfrog engine belongs to the middle of a step, so
-that a step after one of another length needs the kick of both halves: gravity is scaled by
-kick_s/dt_s (`steps.advance`), which is what the engine itself does when steps are equal.
+Between them steps are ordinary: even parts of what is left, fine enough for a swing and for a load.
+The velocity of a leapfrog engine belongs to the middle of a step, so that a step after one of
+another length needs the kick of both halves: gravity is scaled by kick_s/dt_s (`steps.advance`).
 
 **Why it is legitimate.** A step says how long it is, what it is for, and which corner is expected
 to hold; never what the state becomes. Positions and velocities are set once, before the first
-step. The block lifts, strikes its base and comes to rest by the engine's own contact, whatever is
-expected here: no angle is projected, no velocity overwritten, no restitution given. What the
-ratio of rates at an impact is, only the engine says, and the study measures it. What is known
-beforehand is what anybody knows who looks at the block: its size, g, and the base's motion. Where
-an expectation is wrong the steps are merely chosen badly, and the error is that of equal steps.
+step. The block lifts, strikes its base and comes to rest by the engine's own contact: no angle is
+projected, no velocity overwritten, no restitution given. Where an expectation is wrong the steps
+are merely chosen badly, and the error is that of equal steps.
 
 **When it is not.** Where other bodies of the same world need steps of their own, or steps follow a
-clock, nobody may choose them so: then `fixed` says what to expect. The pivot has to hold: where it
+clock, nobody may choose them so: then `tuned` says what to expect. The pivot has to hold: where it
 slides by more than a hundredth of the width, with a friction that a scene asks for, a run fails by
 name (`watch.HOLD_WIDTHS`). And where a block bounces through swings of a few steps, or lies in a
-soft contact, no impact can be foreseen: there landing is worth what equal steps are.
+soft contact, no impact can be foreseen.
 
-**What else a preset does** must be said beside its figures (`Preset.helped_by`): a contact that
-holds as firmly as each phase needs; the pivot's velocity given back while the block turns about it,
-so that its mean over a step is zero; the pivot kept in contact over the gap by which it rises.
+What else a preset does is said beside its figures (`Preset.helped_by`).
 """
 
 import math

@@ -145,19 +145,19 @@ def timetable(scene: Scene, same: float) -> tuple[FloatArray, FloatArray]:
     A load begins where abs(u_g'') exceeds g tan(alpha) (EQUATIONS.md, "From (1) and (2)"). Times
     closer than `same` [s] are the same.
     """
-    block = scene.system
-    loads = loads_of(scene.motion, block.gravity * math.tan(block.alpha))
+    right, left = (scene.system.gravity * math.tan(alpha) for alpha in scene.alphas)
+    loads = loads_of(scene.motion, np.array([left, right]))
     stops = {*scene.motion.breakpoints, scene.watched, *(t for load in loads for t in load[:2])}
     later = [*sorted(stop for stop in stops if stop > same), math.inf]
     return np.array(later), np.array([*loads, NEVER])
 
 
-def loads_of(motion: Motion, onset: float) -> list[Load]:
-    """Return the times during which abs(u_g'') exceeds `onset` [m/s2], in order."""
+def loads_of(motion: Motion, onsets: FloatArray) -> list[Load]:
+    """Return the times during which each pull of u_g'' exceeds its onset [m/s2], in order."""
     grid = np.union1d([0.0, motion.duration, *_turns(motion)], motion.breakpoints)
-    above = PULLS[:, None] * motion.acceleration(grid) > onset
+    above = PULLS[:, None] * motion.acceleration(grid) > onsets[:, None]
     pulled, change = np.nonzero(above[:, 1:] != above[:, :-1])
-    crossings = _crossings(motion, PULLS[pulled], onset, grid[change], grid[change + 1])
+    crossings = _crossings(motion, PULLS[pulled], onsets[pulled], grid[change], grid[change + 1])
     loads: list[Load] = []
     for number, pull in enumerate(PULLS.tolist()):
         corners = crossings[pulled == number].tolist()
@@ -184,7 +184,7 @@ def _turns(motion: Motion) -> list[float]:
 
 
 def _crossings(
-    motion: Motion, pull: FloatArray, onset: float, low: FloatArray, high: FloatArray
+    motion: Motion, pull: FloatArray, onset: FloatArray, low: FloatArray, high: FloatArray
 ) -> FloatArray:
     """Return the times [s], each between two, at which pull u_g'' passes `onset`: to the digit.
 

@@ -91,7 +91,8 @@ class Watch:
     home: float  # where its centre is at rest [m]
     half_width: float
     half_height: float
-    alpha: float
+    alpha: float  # to the right, as is `peak`, the largest rotation [rad]
+    alpha_left: float
     lift: float  # height of the free corner above which it is aloft [m]
     rest_time: float  # time without that after which it is at rest [s]
     rest_rate: float  # rate up to which it may turn then [rad/s]
@@ -107,13 +108,16 @@ class Watch:
     rocked: bool  # it has left its rest at some time
     lifted: bool  # it is aloft at the last row
     crossed: bool  # it has exceeded alpha
-    peak: float  # largest rotation [rad]
+    peak: float
+    peak_left: float
     low_since: float  # since when it has not been aloft [s], nan while it is
     side: float  # of the swing, 0 where there is none
     last_rest: float = 0.0  # when it last came to rest [s]
     turned_at: float = -math.inf  # when it last turned faster than a block at rest may [s]
     overturned: bool = False
-    turned: bool = False  # it has turned back after the motion
+    # it has turned back after the motion, from both sides where they are unlike
+    turned: bool = False
+    turned_side: float = 0.0  # from which at last
     done: bool = False  # the response is decided
     rows: int = 0
     events: int = 0
@@ -158,14 +162,15 @@ def begin_watch(
     block, (theta, rate) = scene.system, scene.start
     lift = max(LIFT_WIDTHS * block.width, resolution.length_m)
     lift += LIFT_FALL * block.gravity * dt_s**2
-    aloft, peak = bool(scene.side), abs(theta)
+    aloft, (right, left) = bool(scene.side), scene.alphas
     weight = block.p**2 * math.sin(block.alpha)
     watch = Watch(
         ahead=1.0 - moment.value,
         home=body.home[0],
         half_width=0.5 * block.width,
         half_height=0.5 * block.height,
-        alpha=block.alpha,
+        alpha=right,
+        alpha_left=left,
         lift=lift,
         rest_time=REST_TIME / block.p,
         rest_rate=REST_RATE * block.p * block.alpha,
@@ -179,9 +184,10 @@ def begin_watch(
         keeps_rows=scene.times is not None,
         resting=not aloft,
         rocked=aloft,
-        lifted=block.width * math.sin(peak) > lift,
-        crossed=peak > block.alpha,
-        peak=peak,
+        lifted=block.width * math.sin(abs(theta)) > lift,
+        crossed=abs(theta) > (right if theta > 0.0 else left),
+        peak=max(0.0, theta),
+        peak_left=max(0.0, -theta),
         low_since=math.nan if aloft else 0.0,
         side=scene.side,
     )
@@ -233,6 +239,11 @@ def see(
     decide(watch, row)
 
 
+def alpha_of(watch: Watch, theta: float) -> float:
+    """Return alpha [rad] of the side to which a rotation leans."""
+    return watch.alpha if theta > 0.0 else watch.alpha_left
+
+
 def props(watch: Watch, row: Row) -> bool:
     """Say whether the contact holds a block that leans, and no longer rocks, where it is."""
     since = max(watch.turned_at, watch.motion_end)
@@ -240,7 +251,9 @@ def props(watch: Watch, row: Row) -> bool:
         since = max(since, watch.first[0, TIME]) if watch.side * row.theta > 0.0 else math.inf
     elif not watch.props:
         return False
-    return row.time - since >= watch.rest_time and abs(row.theta) < PROPPED_PART * watch.alpha
+    return row.time - since >= watch.rest_time and abs(row.theta) < PROPPED_PART * alpha_of(
+        watch, row.theta
+    )
 
 
 def lean(watch: Watch, row: Row) -> None:
@@ -257,7 +270,7 @@ def lean(watch: Watch, row: Row) -> None:
 def check(watch: Watch, pose: Pose, low: float, sine: float, cosine: float) -> None:
     """Look at the heights of the lowest corner, `low` [m], and of the centre, and at the slide."""
     width = 2.0 * watch.half_width
-    if abs(pose.theta) <= watch.alpha:
+    if abs(pose.theta) <= alpha_of(watch, pose.theta):
         inward = math.copysign(watch.half_width * (1.0 - cosine), pose.theta)
         shifted = pose.x - watch.home - watch.half_height * sine - inward
         watch.slide = max(watch.slide, abs(shifted))
@@ -350,15 +363,24 @@ def turning(watch: Watch) -> None:
     """Note the largest rotation near the last row but one."""
     b, c = row_of(watch.two, 0), row_of(watch.two, 1)
     side = math.copysign(1.0, b.theta)
-    peak = abs(c.theta)
+    top(watch, c.theta)
     if b.rate * side > 0.0 >= c.rate * side:
         bend = (b.rate - c.rate) / (c.rate_s - b.rate_s) * side
         rate = extrapolated(watch.two, 0, 2, b.time)
-        peak = max(peak, abs(b.theta) + 0.5 * rate * rate / bend)
-        watch.turned = watch.turned or (b.time >= watch.motion_end and watch.lifted)
-    if peak > watch.peak:
-        watch.peak = peak
-        watch.crossed = peak > watch.alpha
+        top(watch, side * (abs(b.theta) + 0.5 * rate * rate / bend))
+        if b.time >= watch.motion_end and watch.lifted:
+            other = watch.turned_side == -side
+            watch.turned = watch.turned or other or watch.alpha == watch.alpha_left
+            watch.turned_side = side
+
+
+def top(watch: Watch, theta: float) -> None:
+    """Note a rotation [rad] where it is the largest one to its side."""
+    if theta > 0.0:
+        watch.peak = max(watch.peak, theta)
+    else:
+        watch.peak_left = max(watch.peak_left, -theta)
+    watch.crossed = watch.crossed or abs(theta) > alpha_of(watch, theta)
 
 
 def decide(watch: Watch, row: Row) -> None:
@@ -371,7 +393,7 @@ def decide(watch: Watch, row: Row) -> None:
     over = row.time >= watch.motion_end
     still = row.time - watch.turned_at >= watch.rest_time
     lies = size >= LYING or (still and size > LYING_PART * LYING)
-    watch.overturned = lies or (over and size > watch.alpha and outward)
+    watch.overturned = lies or (over and size > alpha_of(watch, row.theta) and outward)
     decided = watch.timed or watch.turned or (watch.resting and still)
     watch.done = watch.overturned or (decided and row.time >= watch.watched)
 

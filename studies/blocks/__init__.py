@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
@@ -26,11 +26,11 @@ from studies.blocks.cabinets import Cabinet, Unit, read_cabinets
 from studies.blocks.fragility import MOST_ONSETS, fragility
 from studies.cases.accelerograms import Baseline, baseline_note, read_record
 from studies.kit import arguments
+from studies.kit.arguments import Running
 from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
-from studies.kit.options import Running
 from studies.kit.say import capital, out_of
 from studies.kit.scene_options import window_of
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.presets import is_engine
 
 APART = 0.01
@@ -40,24 +40,11 @@ WIDTH = 1e-6
 
 
 class Strength(NamedTuple):
-    """Factors on a motion that lift and overturn, the latter inf if none up to MOST_ONSETS does.
-
-    The friction is what the exact solution needs at the factor that overturns.
-    """
+    """Factors on a motion that lift and overturn, the latter inf if none up to MOST_ONSETS does."""
 
     lifts: float
     margin: float
     margin_friction: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Apart(Job):
-    """A job in a process of its own, for one of many searches."""
-
-    @property
-    def needs_process(self) -> bool:
-        """Always."""
-        return True
 
 
 ALL_SCALES = 0.0
@@ -113,11 +100,12 @@ def jobs(
         listed |= listed.pop("further")
         rubs = engine and cabinet.friction is not None
         found.append(
-            (Apart if many and scale == ALL_SCALES else Job)(
+            Job(
                 labels={**listed, **moves[name], "scale": scale},
                 case=Question(system=block, motion=motion, duration=window),
                 source=source,
                 options={"friction": cabinet.friction} if rubs else {},
+                apart=many and scale == ALL_SCALES,
             )
         )
     return found
@@ -284,18 +272,13 @@ STUDY = Study(
     name="blocks",
     question="Which blocks of a list overturn under recorded ground motions, with what margin?",
     help="",
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     texts=("name", "record", "record_digest", "source", "outcome", "no_margin"),
     captions={
         "blocks": "Blocks ranked by the factor on a record that overturns them first, "
         "each a line as the key says.",
         "fragility": "Part of the records that overturn a block of the list, by their factor.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 
 

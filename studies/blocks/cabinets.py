@@ -55,10 +55,7 @@ class Cabinet:
 
 
 def read_cabinets(path: Path, unit: Unit = "m", taken: Sequence[str] = ()) -> list[Cabinet]:
-    """Read a list, separated by commas, semicolons or tabs; BadInputError names what is wrong.
-
-    The unit is that of sizes whose column states none; a further column has no name that is taken.
-    """
+    """Read a list, separated by commas, semicolons or tabs; BadInputError names what is wrong."""
     found, bad = dict[str, Cabinet](), dict[tuple[str, str], list[tuple[int, str]]]()
     try:
         if path.suffix.lower() in (".xlsx", ".xls", ".ods", ".numbers"):
@@ -90,10 +87,7 @@ def read_cabinets(path: Path, unit: Unit = "m", taken: Sequence[str] = ()) -> li
 def _rows(
     lines: Sequence[str], unit: Unit, taken: Sequence[str]
 ) -> Iterator[tuple[int, Cells, Cells]]:
-    """Yield the line that each row ends on, its cells by their columns, and the columns' units.
-
-    Lines above the first that names all columns needed are titles.
-    """
+    """Yield the line that each row ends on, its cells by their columns, and the columns' units."""
     filled = [at for at, line in enumerate(lines) if line.strip()] or [0]
     named = (at for at in filled if all(word in lines[at].lower() for word in NEEDED))
     begin = next(named, filled[0])

@@ -21,10 +21,7 @@ def read_record(
     *,
     insist: bool = True,
 ) -> Record:
-    """Read a recorded ground acceleration [m/s2], as `Record.read` does, and correct it.
-
-    A record that cannot be read, or is zero or nothing but its trend, is refused.
-    """
+    """Read a recorded ground acceleration [m/s2], as `Record.read` does, and correct it."""
     try:
         record = Record.read(path, units, dt, insist=insist)
     except ValueError as error:

@@ -70,23 +70,14 @@ class RandomFrame(RandomCase):
 
 
 def draw(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
-    """Yield random cases without end, the same ones for the same seed.
-
-    H/B from 1.2 to 12, B from 0.02 to 10 m, 1 to 4 half cycles, amplitudes from 1.02 to 4 onsets
-    and omega/p from 0.3 to 12, width and frequency with uniform logarithms. Frames have 2 to 5
-    columns and loads from 0.1 to 10, with uniform logarithms. Kept are
-    those of which the reference is sure.
-    """
+    """Yield without end random cases of which the reference is sure, the same for a seed."""
     kept = filter(_is_sure, _everything(seed, scene))
     for case, drawn in enumerate(kept):
         yield replace(drawn, case=case)
 
 
 def calm_frames(seed: int) -> Iterator[RandomFrame]:
-    """Yield those of `draw`, without end, that survive, of 2 to 4 columns, loads 0.2 to 6, κ < 10.
-
-    κ is by the amplitude, or by the velocity ratio of impacts where that is larger.
-    """
+    """Yield those of `draw` that survive, of 2 to 4 columns, loads from 0.2 to 6, κ below 10."""
     for drawn in _everything(seed, "frame"):
         if isinstance(drawn, RandomFrame) and drawn.columns <= 4 and 0.2 <= drawn.load <= 6.0:
             kappas = conditioning(drawn.block, drawn.motion)  # nan where it does not survive
@@ -95,11 +86,7 @@ def calm_frames(seed: int) -> Iterator[RandomFrame]:
 
 
 def free_boxes(seed: int) -> Iterator[RandomCase]:
-    """Yield boxes that rock on a floor at a friction of 0.8, without end, the same for a seed.
-
-    B from 0.3 to 1 m, H/B from 2 to 4.5, half and full sines of 1.1 to 1.8 onsets, omega/p from 0.8
-    to 4. Kept are those that need a friction of 0.72 at most and of which the reference is sure.
-    """
+    """Yield boxes that rock on a floor at a friction of 0.8, without end, the same for a seed."""
     generator = np.random.default_rng(seed)
     kept = count()
     while True:
@@ -118,11 +105,7 @@ def free_boxes(seed: int) -> Iterator[RandomCase]:
 
 
 def slides(seed: int) -> Iterator[tuple[SlidingBlock, SinePulse]]:
-    """Yield blocks that slide and their pulses without end, the same ones for the same seed.
-
-    H/B is from 0.25 to 1, the friction from 0.05 to 0.6, the amplitude from 1.2 to 5 times that;
-    sizes, half cycles and omega/p are as of blocks. Kept are slips that can be seen.
-    """
+    """Yield blocks whose slips can be seen and their pulses, without end, the same for a seed."""
     generator = np.random.default_rng(seed)
     while True:
         width, frequency = np.exp(generator.uniform(np.log([0.02, 0.3]), np.log([10.0, 12.0])))

@@ -101,10 +101,7 @@ class Extreme:
 
 
 def _boundary(case: Extreme, surviving: float, overturned: float) -> float:
-    """Return the amplitude [onsets] at which the exact solution begins to overturn.
-
-    By bisection to the last digit but three, from one that is survived and one that is not.
-    """
+    """Return the amplitude [onsets] at which the exact solution begins to overturn."""
     while overturned - surviving > 1e-13 * surviving:
         middle = 0.5 * (surviving + overturned)
         tried = replace(case, onsets=middle)

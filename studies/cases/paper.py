@@ -34,10 +34,7 @@ WIDTHS_M = (0.5, 1.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One point of the paper's sensitivity analysis: figure, pulse and excess [g] of `SWEEPS`.
-
-    H/B, B [m], and the circular frequency of the pulse over p.
-    """
+    """One point of the paper's sensitivity analysis: figure, pulse and excess [g] of `SWEEPS`."""
 
     figure: int
     pulse: str
@@ -123,10 +120,7 @@ def sweep_cases(figures: Iterable[int]) -> Iterator[Case]:
 
 @cache
 def chosen_cases(quick: bool) -> dict[str, list[Case]]:
-    """Return the cases of each set: "typical", with peaks near 0.3, and "near overturning".
-
-    Of each of the paper's figures and aspect ratios one case each; quick takes two figures.
-    """
+    """Return the cases of each set: "typical", with peaks near 0.3, and "near overturning"."""
     chosen: dict[str, list[Case]] = {"typical": [], "near overturning": []}
     for figure in (6, 8) if quick else (6, 7, 8, 9):
         known = [case for case in sweep_cases([figure]) if case.width_m == 0.5]

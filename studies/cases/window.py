@@ -25,10 +25,7 @@ def pulse_of(block: RigidBlock, pulse: str, onsets: float, omega_over_p: float) 
 
 @dataclass(frozen=True, kw_only=True)
 class Window:
-    """A plane of pulses on blocks of one shape: omega/p, and amplitudes in units of g tan(alpha).
-
-    ValueError of an H/B whose maps would take long.
-    """
+    """A plane of pulses on blocks of one shape: omega/p, and amplitudes over g tan(alpha)."""
 
     pulse: str = "full-sine"
     aspect: float = 4.0

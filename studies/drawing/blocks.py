@@ -1,20 +1,19 @@
 """The blocks of a list, ranked by the factor on a record that overturns them first."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.font_manager import fontManager
 from matplotlib.lines import Line2D
 from scipy.stats import norm
 
 from studies.drawing.facets import key, sheet
-from studies.drawing.letters import drawable, families
 from studies.drawing.styles import look_at
 
 MOST_RECORDS = 5
@@ -23,14 +22,17 @@ MOST_NAMED = 6
 """Curves with a name in the key, of the blocks that overturn first."""
 MOST_DRAWN = 60
 """Blocks in the picture, those that overturn first."""
+FONTS = (
+    *("DejaVu Sans", "Noto Sans CJK JP", "Noto Sans JP", "IPAexGothic", "Yu Gothic"),
+    *("Hiragino Sans", "Meiryo", "Microsoft YaHei", "PingFang SC", "WenQuanYi Zen Hei"),
+    *("Malgun Gothic", "Noto Sans Devanagari", "Noto Sans Thai", "Noto Emoji"),
+    *("Segoe UI Emoji", "Symbola"),
+)
+"""Fonts that are used where they are installed; the first comes with matplotlib."""
 
 
 def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Figure:
-    """Draw, for each block and record, the factors from lifting to overturning.
-
-    The lines, with the columns of blocks.csv, are in the order in which blocks stand; the scales
-    are the factors that were asked for.
-    """
+    """Draw, for each block and record, the factors from lifting to overturning."""
     records = [*dict.fromkeys(lines.sort_index()["record"])]
     names = [*dict.fromkeys(lines["name"])]
     kept = f"; these {MOST_DRAWN} first" if len(names) > MOST_DRAWN else ""
@@ -59,7 +61,7 @@ def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Fig
         axes.tick_params(axis="x", which="both", labelsize=9)
         axes.set_yticks(range(len(names)), map(_short, names), fontsize=8)
         axes.grid(axis="y", alpha=0.2)
-        axes.set_title(drawable(title) + kept, fontsize=10, wrap=True)
+        axes.set_title(title + kept, fontsize=10, wrap=True)
         handles = [key_of[place] for place in sorted(key_of)]
         key(drawing, [*handles, asked], min(len(handles) + 1, 2 if many else 4), 10.0)
     return drawing
@@ -88,10 +90,7 @@ def _draw_spread(axes: Axes, lines: pd.DataFrame, level: int) -> dict[int, Line2
 
 
 def draw_fragility(fits: pd.DataFrame, lines: pd.DataFrame) -> Figure:
-    """Draw the part of the records that overturns each block, by their factor; of the list, dots.
-
-    The fits have the columns of fragility.csv, the lines those of blocks.csv.
-    """
+    """Draw the part of the records that overturns each block, by their factor."""
     fits = fits[(fits["measure"] == "factor") & fits["theta"].notna()]
     drawing, (axes,) = sheet((8.0, 4.2))
     with rc_context({"font.family": families(fits["name"].tolist()), "text.parse_math": False}):
@@ -133,5 +132,11 @@ def _draw_line(axes: Axes, line: dict[Any, Any], level: float, place: int) -> Li
 
 
 def _short(name: str) -> str:
-    name = drawable(name)
     return name if len(name) <= 24 else f"{name[:23]}…"
+
+
+def families(words: Iterable[str]) -> list[str]:
+    """Return the fonts that such words are drawn in, as rcParams["font.family"] takes them."""
+    usual: list[str] = mpl.rcParams["font.family"]
+    there = set(fontManager.get_font_names())
+    return usual if all(map(str.isascii, words)) else [name for name in FONTS if name in there]

@@ -87,10 +87,7 @@ def _contours(axes: Axes, forces: pd.DataFrame) -> None:
 
 
 def draw_plane(rows: pd.DataFrame, rest_s: float) -> Figure:
-    """Draw the verdicts on full sines that come after a rest [s], a map for each engine.
-
-    Every other pulse of the plane comes so; it stands for its neighbour, too.
-    """
+    """Draw the verdicts on full sines that come after a rest [s], a map for each engine."""
     shown = (rows["pulse"] == "full-sine") & (rows["aspect"] == 3.0) & (rows["width_m"] == 0.5)
     asked = rows[shown & (rows["source"] != "exact")]
     over = np.where(asked["outcome"] == "overturned", "overturns", "survives")

@@ -21,10 +21,7 @@ LANDING = "landing"
 
 
 def band_of(method: str) -> str | None:
-    """Return the preset in whose band a method is drawn, "" without one; None if in none.
-
-    What steps by its own error control is the best of its engine, as landing is of others.
-    """
+    """Return the preset in whose band a method is drawn, "" without one; None if in none."""
     engine, preset, dial = parts_of(method)
     if not engine or (preset in (DEFAULT, BEST) and not dial):
         return preset
@@ -39,10 +36,7 @@ def _banded(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw_precision(table: pd.DataFrame, others: pd.DataFrame | None = None) -> Figure:
-    """Draw the median error of the peak, of the harder set, against the run time of a case.
-
-    Engines of another table are drawn in grey beside those of this one.
-    """
+    """Draw the median error of the peak, of the harder set, against the run time of a case."""
     lines = _banded(table)
     cloud = lines.iloc[:0] if others is None or others.empty else _banded(others)
     cloud = cloud[~cloud["method"].isin(lines["method"])]
@@ -72,10 +66,7 @@ def draw_precision(table: pd.DataFrame, others: pd.DataFrame | None = None) -> F
 
 
 def _lines(axes: Axes, lines: pd.DataFrame, cloud: pd.DataFrame) -> None:
-    """Draw a line for each method, and write the names beside their ends, from above.
-
-    Of the cloud two are named: the most accurate one and MuJoCo, or the next one.
-    """
+    """Draw a line for each method, and write the names beside their ends, from above."""
     least = cloud.groupby("method", sort=False)["error"].last().sort_values(kind="stable").index
     best = sorted(least, key=lambda it: it != least[0] and parts_of(it)[0] != "mujoco")[:2]
     drawn = pd.concat([lines, cloud[cloud["method"].isin(best)]])

@@ -1,4 +1,4 @@
-"""The paper's figures 6 to 9, a row for each H/B; and errors and run times of all presets."""
+"""The paper's figures 6 to 9, a row for each H/B."""
 
 from collections.abc import Sequence
 from itertools import product
@@ -9,11 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from engines.declaration import AT_REST
-from studies.drawing.facets import error_scale, key, preset_dots, rows, sheet
-from studies.drawing.styles import full_name, line_of, style_of, title_of
-from studies.kit.say import part
-from studies.measures.presets import in_order, look_of
+from studies.drawing.facets import error_scale, key, sheet
+from studies.drawing.styles import full_name, line_of, style_of
 
 TOP, LINE = 1.2, 0.085
 """Upper end of the scale of abs(theta)/theta_cr, and the height of a line in the band above it."""
@@ -91,43 +88,3 @@ def _look(source: str) -> dict[str, Any]:
     style = style_of(source)
     line = {"color": style.colour, "linestyle": style.line, "linewidth": style.width}
     return line if style.line else {**style.points(4.0), "zorder": 4}
-
-
-def draw_overview(table: pd.DataFrame) -> Figure:
-    """Draw errors and run times of presets: engines as rows, presets as dots.
-
-    The table has a line for each: engine, preset, cases, wrong, median, max, ms.
-    """
-    table = table[table["preset"] != AT_REST]  # a variant, which the table has
-    engines, presets = list(dict.fromkeys(table["engine"])), in_order(table["preset"])
-    size = (8.6, 1.9 + 0.125 * len(presets) * len(engines))
-    drawing, (errors, times) = sheet(size, 1, 2, sharey=True, width_ratios=(1.7, 1.0))
-    for line in table.to_dict("records"):
-        place = presets.index(str(line["preset"])) - 0.5 * (len(presets) - 1)
-        y = engines.index(str(line["engine"])) + 0.76 * place / len(presets)
-        colour = look_of(str(line["preset"])).colour
-        errors.plot([line["median"], line["max"]], [y, y], color=colour, lw=2.4, alpha=0.45)
-        errors.plot(line["median"], y, "|", color=colour, markersize=7)
-        errors.plot(line["max"], y, "o", color=colour, markersize=5.5)
-        times.plot(line["ms"], y, "o", color=colour, markersize=5.5)
-        if line["wrong"]:
-            errors.annotate(f"{line['wrong']:.0f} wrong", (line["max"], y), (6, 0), color=colour,
-                            textcoords="offset points", fontsize=8.5, va="center")  # fmt: skip
-    for axes in (errors, times):
-        rows(axes, [title_of(name) for name in engines], 11.0)
-        axes.set(xscale="log")
-        axes.grid(axis="y", visible=False)
-        for place in range(1, len(engines)):
-            axes.axhline(place - 0.5, color="#cccccc", linewidth=0.8)
-    low, high = errors.get_xlim()
-    errors.set_xlim(low, 8.0 * high)  # for the words
-    error_scale(errors.xaxis, low, max(high, 1.0))
-    errors.set_xlabel("error of the largest rotation:\nmedian (bar) to largest (dot)", fontsize=10)
-    times.xaxis.set_major_formatter("{x:g}")
-    times.set_xlabel("run time of a case  [ms]", fontsize=10)
-    most = {name: part(table.loc[table["preset"] == name, "max"].max()) for name in presets}
-    words = [f"by up to {most[name]} {look_of(name).words}" for name in (presets[0], presets[-1])]
-    head = f"In {table['cases'].max():.0f} cases peaks are off {words[0]},\n{words[1]}"
-    drawing.suptitle(head, fontsize=12)
-    key(drawing, preset_dots(presets), 5, fontsize=10, handletextpad=0.2, columnspacing=1.2)
-    return drawing

@@ -13,7 +13,7 @@ from cyclopts import Parameter
 from studies.cases.refusal import BadInputError
 from studies.experiments import cubes, rocks
 from studies.kit.jobs import Job, Row
-from studies.kit.study import Figures, Study, Tables
+from studies.kit.study import Figures, Study, Tables, stages
 
 BODIES = {"rocks": rocks, "cubes": cubes}
 
@@ -90,17 +90,12 @@ default settings, those of Acosta et al. (2022), and settings fitted to half of 
 hour. Name one folder.""",
     sources=(rocks.EXACT,),
     options=Options,
-    jobs=jobs,
-    measure=measure,
-    tabulate=tabulate,
-    finding=finding,
-    shown=shown,
-    figures=figures,
     captions={
         "rocks": "What fell and what stood, over PGA and PGV, with the tests that all get wrong; "
         "and how well the margin, PGA and PGV tell one from the other (ROC curves).",
         "cubes": "Mean loss of the tosses that no fit has seen, within 95 %, and the part of them "
         "that ends on the right face.",
     },
+    **stages(jobs, measure, tabulate, finding, shown, figures),
 )
 command = STUDY.command()

@@ -15,17 +15,17 @@ import sys
 import threading
 from collections.abc import Mapping, Sequence
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from studies.kit import say
-from studies.kit.postponed import postpone
 
 if TYPE_CHECKING:
     from cyclopts import App, UnknownOptionError
 
 Groups: TypeAlias = Mapping[str, Mapping[str, str]]
 """Title of a group in the help -> its commands, each with its purpose."""
-PLACES = {"compare": "compare.command", "report": "page.report", "readme": "page.readme"}
+PLACES = {"report": "page.chapters", "readme": "page.readme"}
 """Command -> its module, where that has another name."""
 REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
 """A refusal of a value, whoever finds it: "width is 0; it must be positive"."""
@@ -101,6 +101,23 @@ def run(groups: Groups, arguments: list[str]) -> int:
         words = "the numbers given are too small, too large or too many to compute with"
         return say.refuse(f"{words} ({say.one_line(error)})")
     return code
+
+
+class Postponed(ModuleType):
+    """Stands for a module until an attribute is asked for; LazyLoader loads at a second import."""
+
+    def __getattr__(self, attribute: str) -> Any:
+        """Load the module, and return its attribute."""
+        if sys.modules.get(self.__name__) is self:
+            sys.modules.pop(self.__name__, None)
+        loaded = import_module(self.__name__)
+        self.__dict__.update(loaded.__dict__)
+        return getattr(loaded, attribute)
+
+
+def postpone(name: str) -> None:
+    """Let imports of a module that is not loaded yet give one that loads it when it is used."""
+    sys.modules.setdefault(name, Postponed(name))
 
 
 def make_app(groups: Groups, chosen: str = "") -> App:

@@ -1,18 +1,23 @@
-"""What a command line may say: numbers in their ranges, words, paths; one line where it may not."""
+"""What a command line may say: numbers in their ranges, words, paths; and options in groups.
+
+A group is a dataclass, which is the type of a command's parameter; a refusal is one line.
+"""
 
 import errno
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
 from cyclopts import Parameter, Token
 
+from analytic.slide import SlidingBlock
 from analytic.text import finite_number
 from engines import ENGINES
-from engines.scene import MOST_HALF_CYCLES
+from engines.scene import MOST_HALF_CYCLES, System
 from engines.settings import perhaps
 from studies.cases.refusal import BadInputError
 from studies.sources import registry
@@ -124,17 +129,11 @@ def sources_option(first: str = "", *, default: bool = True) -> Parameter:
 
 
 def _check_sources(_: type, names: Sequence[str] | None) -> None:
-    if names is None:  # they are not given
-        return
-    if not names:
-        words = f"it must name at least one of {registry.allowed()}"
-        raise BadInputError(f"--sources is empty; {words}")
-    for name in names:
-        try:
+    for name in names or ():
+        with as_bad_input("--sources: "):
             registry.resolve(name)
-        except registry.UnknownSourceError as error:
-            raise BadInputError(f"--sources: {error}") from error
-    refuse_repeats("--sources", names)
+    if names is not None:
+        refuse_repeats("--sources", names, f"name at least one of {registry.allowed()}")
 
 
 def _check_engines(_: type, names: Sequence[str] | None) -> None:
@@ -158,11 +157,13 @@ Engines = Annotated[
 ]
 
 
-def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
+def refuse_repeats(
+    argument: str, values: Iterable[Any], needed: str = "have at least one value"
+) -> None:
     """Refuse an argument, named with its dashes, of which a value is given twice, or none."""
     values = list(values)
     if not values:
-        raise BadInputError(f"{argument} is empty; it must have at least one value")
+        raise BadInputError(f"{argument} is empty; it must {needed}")
     for number, value in enumerate(values):
         if value in values[:number]:
             shown = str(value) if isinstance(value, Path) else value
@@ -171,13 +172,8 @@ def refuse_repeats(argument: str, values: Iterable[Any]) -> None:
 
 def refuse_given(options: Mapping[str, object], allowed: str) -> None:
     """Refuse options, given where not None or False, that may be given as `allowed` says."""
-    given = [
-        f"{_option(name)} is {value}"
-        for name, value in options.items()
-        if value is not None and value is not False
-    ]
-    if given:
-        raise BadInputError(f"{' and '.join(given)}; it may be given {allowed}")
+    if given := {name: it for name, it in options.items() if it is not None and it is not False}:
+        raise BadInputError(f"{_shown(given)}; it may be given {allowed}")
 
 
 def required(words: str, **given: T | None) -> tuple[T, ...]:
@@ -191,11 +187,14 @@ def required(words: str, **given: T | None) -> tuple[T, ...]:
 def refuse_both(**given: float | str | None) -> None:
     """Refuse two options of which each says what the other does; None where it is not given."""
     if None not in given.values():
-        shown = " and ".join(
-            f"{_option(name)} is {f'{value:g}' if isinstance(value, float) else value}"
-            for name, value in given.items()
-        )
-        raise BadInputError(f"{shown}; give one or the other")
+        raise BadInputError(f"{_shown(given)}; give one or the other")
+
+
+def _shown(options: Mapping[str, object]) -> str:
+    return " and ".join(
+        f"{_option(name)} is {f'{value:g}' if isinstance(value, float) else value}"
+        for name, value in options.items()
+    )
 
 
 def _option(name: str) -> str:
@@ -217,3 +216,117 @@ def check_file(argument: str, path: Path, *ends: str) -> None:
     except OSError as error:
         words = f"it must be a file that can be written ({error.strerror})"
         raise BadInputError(f"{argument} is {str(path)!r}; {words}") from error
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Computing:
+    """Where jobs run, and for how long at most.
+
+    Attributes
+    ----------
+    jobs
+        Processes that run engines; by default one per core.
+    time_limit
+        Wall-clock time [s] after which a case of an engine fails.
+    cluster
+        Address of a Dask scheduler whose workers run all cases, such as tcp://127.0.0.1:8786.
+    """
+
+    jobs: Count | None = None
+    time_limit: TimeLimit = 600.0
+    cluster: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.cluster is not None:
+            refuse_given({"jobs": self.jobs}, "only without --cluster")
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Running(Computing):
+    """Where a study's jobs run, and which of its rows there are already.
+
+    Attributes
+    ----------
+    also
+        Further folders of the same command's results, such as those of engines that are installed
+        elsewhere; their rows are added.
+    """
+
+    also: Annotated[tuple[Place, ...] | None, several_or_none] = None
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class EffortOptions:
+    """How finely the sources step that do.
+
+    Attributes
+    ----------
+    p_dt
+        Step of solvers and engines in units of 1/p; by default their own.
+    accuracy
+        Accuracy of engines with landing steps; by default standard.
+    """
+
+    p_dt: Step | None = None
+    accuracy: Annotated[registry.Accuracy, one_of(registry.Accuracy)] | None = None
+
+    def options(self, name: str) -> dict[str, Any]:
+        """Return the options that this means for a source."""
+        source = registry.resolve(name)
+        chosen: dict[str, Any] = {}
+        if self.p_dt is not None and source.stepping:
+            chosen["step"] = self.p_dt
+        if self.accuracy is not None and source.accurate:
+            chosen["accuracy"] = self.accuracy
+        return chosen
+
+    def refuse_idle(self, sources: Sequence[str]) -> None:
+        """Refuse an option that none of the sources takes."""
+        _refuse_idle(sources, "stepping", "a solver or an engine", p_dt=self.p_dt)
+        _refuse_idle(
+            sources, "accurate", "an engine that chooses its steps", accuracy=self.accuracy
+        )
+
+
+def _refuse_idle(sources: Sequence[str], taking: str, words: str, **given: Any) -> None:
+    """Refuse a given option if none of the sources is what takes it."""
+    if not any(getattr(registry.resolve(source), taking) for source in sources):
+        refuse_given(given, f"only if --sources names {words}")
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Yours:
+    """What a reader's own simulation has.
+
+    Attributes
+    ----------
+    friction
+        Coefficient of friction between block and base in engines; by default the preset's. Models
+        do not slide: if the exact solution needs more friction, its row says so.
+    dt
+        Step [s] of solvers, and of engines whose preset takes equal steps.
+    """
+
+    friction: NotNegative | None = None
+    dt: Positive | None = None
+
+    def options(self, sources: Sequence[str], system: System) -> dict[str, dict[str, float]]:
+        """Return the options that this means for each source: friction, and step, p dt."""
+        if not isinstance(system, SlidingBlock):
+            _refuse_idle(sources, "engine", "at least one engine", friction=self.friction)
+        words = "a solver or an engine that takes equal steps"
+        _refuse_idle(sources, "stepping", words, dt=self.dt)
+        chosen: dict[str, dict[str, float]] = {name: {} for name in sources}
+        for name, source in [(name, registry.resolve(name)) for name in sources]:
+            if self.friction is not None and source.engine:
+                chosen[name]["friction"] = self.friction
+            if self.dt is not None and source.accurate:
+                words = f"{name} takes {source.used.stepping.value}"
+                raise BadInputError(f"--dt is {self.dt:g}; its steps must be equal, but {words}")
+            if self.dt is not None and source.stepping:
+                chosen[name]["step"] = self.dt * system.p
+        return chosen

@@ -41,6 +41,7 @@ class Job:
     source: str  # its name, as the user wrote it
     options: Mapping[str, Any] = field(default_factory=dict)  # further settings of the source
     lost: Response | None = field(default=None, repr=False)
+    apart: bool = False  # whether it runs in a process of its own though its source is a model
 
     def __post_init__(self) -> None:
         case = self.case
@@ -72,7 +73,7 @@ class Job:
     @property
     def needs_process(self) -> bool:
         """Whether its source may crash, or not come to an end."""
-        return self.asked.kind == "engine"
+        return self.apart or self.asked.kind == "engine"
 
 
 def plain(value: Any) -> Any:

@@ -1,6 +1,6 @@
 """Figures as files: each written in one piece."""
 
-from collections.abc import Mapping
+import warnings
 from pathlib import Path
 from typing import BinaryIO
 
@@ -25,8 +25,9 @@ def lay_out(drawing: Figure) -> None:
 def save(drawing: Figure, path: Path) -> None:
     """Write a figure in one piece, in the format of the file's suffix; its layout is then fixed."""
     drawing.set_dpi(DPI)
-    lay_out(drawing)
-    with draft(path) as part, part.open("wb") as file:
+    with draft(path) as part, part.open("wb") as file, warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph")  # a letter that no font has is a box
+        lay_out(drawing)
         if path.suffix == ".png":
             write_points(drawing, file)
         else:
@@ -42,9 +43,3 @@ def write_points(drawing: Figure, file: BinaryIO) -> None:
     whole = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
     few = whole.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE)
     few.save(file, "png", optimize=True, dpi=(DPI, DPI))
-
-
-def save_all(drawings: Mapping[str, Figure], folder: Path) -> None:
-    """Write the figures of a study under their names into its folder."""
-    for name, drawing in drawings.items():
-        save(drawing, folder / f"{name}.png")

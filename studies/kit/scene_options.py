@@ -19,18 +19,7 @@ from engines.scene import System, free_rocking_window
 from studies.cases.accelerograms import Baseline, read_record
 from studies.cases.paper import PULSES
 from studies.cases.refusal import BadInputError
-from studies.kit.arguments import (
-    Count,
-    Finite,
-    HalfCycles,
-    Place,
-    Positive,
-    as_bad_input,
-    one_of,
-    refuse_both,
-    refuse_given,
-    required,
-)
+from studies.kit import arguments
 
 MOST_TIME, MOST_STEPS = 1e6, 1e9
 """How long a block is watched at most, in units of 1/p, and in how many steps: 1e9 take the fastest
@@ -81,24 +70,24 @@ class Excitation:
         about which it turns.
     """
 
-    amplitude: Positive | None = None
-    omega: Positive | None = None
-    pulse: Annotated[Pulse, one_of(Pulse)] | None = None
-    half_cycles: HalfCycles | None = None
-    phase: Finite | None = None
-    record: Place | None = None
-    record_dt: Positive | None = None
-    units: Annotated[Units, one_of(Units)] | None = None
-    scale: Positive | None = None
-    pga: Positive | None = None
-    baseline: Annotated[Baseline, one_of(Baseline)] | None = None
-    tilt: Finite | None = None
-    rate: Finite | None = None
+    amplitude: arguments.Positive | None = None
+    omega: arguments.Positive | None = None
+    pulse: Annotated[Pulse, arguments.one_of(Pulse)] | None = None
+    half_cycles: arguments.HalfCycles | None = None
+    phase: arguments.Finite | None = None
+    record: arguments.Place | None = None
+    record_dt: arguments.Positive | None = None
+    units: Annotated[Units, arguments.one_of(Units)] | None = None
+    scale: arguments.Positive | None = None
+    pga: arguments.Positive | None = None
+    baseline: Annotated[Baseline, arguments.one_of(Baseline)] | None = None
+    tilt: arguments.Finite | None = None
+    rate: arguments.Finite | None = None
 
     def pose(self, block: System) -> tuple[Motion, tuple[float, float]]:
         """Return the motion that the options mean, and θ [rad] and its rate [rad/s] at t = 0."""
         if isinstance(block, SlidingBlock):
-            refuse_given(self._given("tilt", "rate"), "only where something rocks")
+            arguments.refuse_given(self._given("tilt", "rate"), "only where something rocks")
         motion = self._motion()
         return motion, self._start(block, motion)
 
@@ -108,29 +97,29 @@ class Excitation:
     def _motion(self) -> Motion:
         pulse = self._given("amplitude", "omega", "pulse", "half_cycles", "phase")
         if self.record is not None:
-            refuse_given(pulse, "only without --record")
+            arguments.refuse_given(pulse, "only without --record")
             return self._recorded(self.record)
-        refuse_given(
+        arguments.refuse_given(
             self._given("record_dt", "units", "scale", "pga", "baseline"), "only with --record"
         )
         released = (self.tilt or self.rate) and set(pulse.values()) == {None}
         return Still() if released else self._pulse()
 
     def _recorded(self, path: Path) -> Record:
-        refuse_both(scale=self.scale, pga=self.pga)
+        arguments.refuse_both(scale=self.scale, pga=self.pga)
         record = read_record(path, self.units, self.baseline, self.record_dt)
         factor = "" if self.scale is None else f" times --scale {self.scale:g}"
         peak = "" if self.pga is None else f" scaled to --pga {self.pga:g}"
-        with as_bad_input(f"--record{factor}{peak}: "):
+        with arguments.as_bad_input(f"--record{factor}{peak}: "):
             if self.pga is not None:
                 return record.scaled_to(self.pga * GRAVITY)
             return record.scaled(1.0 if self.scale is None else self.scale)
 
     def _pulse(self) -> SinePulse:
-        refuse_both(half_cycles=self.half_cycles, pulse=self.pulse)
+        arguments.refuse_both(half_cycles=self.half_cycles, pulse=self.pulse)
         words = "a pulse requires both, or give --record, --tilt or --rate"
-        amplitude_g, omega = required(words, amplitude=self.amplitude, omega=self.omega)
-        with as_bad_input():
+        amplitude_g, omega = arguments.required(words, amplitude=self.amplitude, omega=self.omega)
+        with arguments.as_bad_input():
             return SinePulse.in_g(
                 amplitude_g,
                 omega=omega,
@@ -162,8 +151,12 @@ class Excitation:
 MOST_M = 200.0
 """Size [m] up to which a block may be one; 300 are a narrow cabinet in millimetres."""
 
-Width = Annotated[Positive, Parameter(help="Full width B of the block or of each column [m].")]
-Height = Annotated[Positive, Parameter(help="Full height H of the block or of each column [m].")]
+Width = Annotated[
+    arguments.Positive, Parameter(help="Full width B of the block or of each column [m].")
+]
+Height = Annotated[
+    arguments.Positive, Parameter(help="Full height H of the block or of each column [m].")
+]
 
 SceneName = Literal["block", "frame", "slide"]
 
@@ -174,7 +167,7 @@ def block_of(width: float, height: float) -> RigidBlock:
         if size > MOST_M:
             meant = f"in metres, as --{name} {1e-3 * size:g} for {size:g} mm"
             raise BadInputError(f"--{name} is {size:g}; it must be at most {MOST_M:g}, {meant}")
-    with as_bad_input():
+    with arguments.as_bad_input():
         return RigidBlock(width=width, height=height)
 
 
@@ -196,27 +189,29 @@ class Standing:
         Distance [m] of a block's mass to the right of the middle; only models take it.
     """
 
-    scene: Annotated[SceneName, one_of(SceneName)] = "block"
-    columns: Count | None = None
-    load: Positive | None = None
-    offset: Finite | None = None
+    scene: Annotated[SceneName, arguments.one_of(SceneName)] = "block"
+    columns: arguments.Count | None = None
+    load: arguments.Positive | None = None
+    offset: arguments.Finite | None = None
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system that the options mean; of --friction only what slides knows."""
         if self.scene != "frame":
-            refuse_given({"columns": self.columns, "load": self.load}, "only with --scene frame")
+            arguments.refuse_given(
+                {"columns": self.columns, "load": self.load}, "only with --scene frame"
+            )
         if self.scene != "block":
-            refuse_given({"offset": self.offset}, "only with --scene block")
+            arguments.refuse_given({"offset": self.offset}, "only with --scene block")
         block = block_of(width, height)
         sizes = {"width": width, "height": height}
-        with as_bad_input():
+        with arguments.as_bad_input():
             if self.scene == "frame":
                 words = "a frame requires the mass of its beam, over that of all columns"
-                (load,) = required(words, load=self.load)
+                (load,) = arguments.required(words, load=self.load)
                 return RockingFrame(**sizes, columns=self.columns or 2, load=load)
             if self.scene == "slide":
                 words = "a block that slides requires one below B/H"
-                (friction,) = required(words, friction=friction)
+                (friction,) = arguments.required(words, friction=friction)
                 return SlidingBlock(**sizes, friction=friction)
             return RigidBlock(**sizes, offset=self.offset) if self.offset else block
 
@@ -229,10 +224,7 @@ def window_of(
     p_dt: float | None = None,
     dt: float | None = None,
 ) -> float:
-    """Return how long a block is watched [s]: as given, or the motion and 8/p.
-
-    What no computer sees the end of is refused, with a step in units of 1/p, or [s].
-    """
+    """Return how long a block is watched [s]: as given, or the motion and 8/p."""
     if duration is not None and duration < motion.duration:
         least = f"the length of the motion, {motion.duration:.6g} s"
         raise BadInputError(f"--duration is {duration:g}; it must be at least {least}")

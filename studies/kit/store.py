@@ -6,7 +6,6 @@ A row is found again by the key of its job, and kept as long as what made it is 
 from __future__ import annotations
 
 import json
-import math
 import os
 import platform
 import sqlite3
@@ -30,15 +29,7 @@ from studies.cases.refusal import BadInputError
 from studies.kit.identity import COMPUTING, NOT_INSTALLED, ROOT, Maker, changed, version_of, why
 from studies.kit.jobs import Job, Row
 from studies.kit.say import say
-from studies.kit.tables import (
-    PACKED,
-    digest,
-    table_in,
-    tables_of,
-    with_head,
-    write_table,
-    write_text,
-)
+from studies.kit.tables import PACKED, digest, table_in, tables_of, write_table, write_text
 
 ROWS, PROVENANCE = "rows.sqlite", "provenance.json"
 LOST = ("no result within the time limit", "the process ", "every worker ")
@@ -59,10 +50,7 @@ class FolderError(BadInputError):
 
 
 class Store:
-    """The rows of a study in a folder, which one run at a time may write to.
-
-    A folder without a store is filled from the table, if it is named, that holds rows as they are.
-    """
+    """The rows of a study in a folder, which one run at a time may write to."""
 
     def __init__(self, folder: Path, study: str, table: str = "") -> None:
         self.folder, self.study, self.table = folder, study, table
@@ -165,11 +153,7 @@ class Store:
             raise FolderError(self.folder, f"its {ROWS} cannot be written ({error})") from error
 
     def take(self, other: Path, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> None:
-        """Copy from another folder the rows of some jobs that would be made so here.
-
-        A failure is taken only where its engine is not installed; else it is tried again. A folder
-        without such rows is refused.
-        """
+        """Copy from another folder the rows of some jobs that would be made so here."""
         rows = _rows_of(other)
         found, stale = _sorted(rows, jobs, makers)
         if not found:
@@ -204,7 +188,7 @@ class Store:
     ) -> None:
         """Write tables by their names, and what made them: versions, sources, what was asked."""
         for name, table in tables.items():
-            write_table(self.folder / f"{name}.csv", with_head(table, self.study, name))
+            write_table(self.folder / f"{name}.csv", _with_head(table, self.study, name))
         before = provenance_of(self.folder)
         run = {
             "start": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -220,6 +204,16 @@ class Store:
             record["machine"] = before.get("machine", record["machine"])
         runs = [*before.get("runs", ()), run]
         write_record(self.folder, {**record, "made": makers, "runs": runs})
+
+
+def _with_head(table: pd.DataFrame, study: str, name: str) -> pd.DataFrame:
+    """Return a table of a study; one that has no columns with those of the published one."""
+    if len(table.columns):
+        return table
+    columns = Path(__file__).parents[1] / "published" / "columns.csv"
+    known = pd.read_csv(columns, keep_default_na=False)
+    mine = known["table"].isin([f"{study}/{name}.csv{end}" for end in ("", PACKED)])
+    return pd.DataFrame(columns=known.loc[mine, "column"].drop_duplicates())
 
 
 def _read(base: sqlite3.Connection) -> Rows:
@@ -342,11 +336,6 @@ def engines_of(record: Mapping[str, Any]) -> dict[str, str]:
     """Return the versions of a record's engines, also of those that answered elsewhere."""
     taken = [also["engines"] for run in record["runs"] for also in run.get("also", ())]
     return {name: it for known in (record["engines"], *taken) for name, it in known.items()}
-
-
-def whole_runs(record: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the runs of a record that computed all rows, and went on until the end."""
-    return [run for run in record["runs"] if run.get("computed") == run.get("rows", math.nan)]
 
 
 def check(folder: Path, names: Iterable[str], option: str) -> None:

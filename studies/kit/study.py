@@ -6,20 +6,19 @@ import inspect
 from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import pandas as pd
 from cyclopts import Parameter
 
-from studies.kit.arguments import Out, sources_option
-from studies.kit.cluster import place_of
+from studies.kit.arguments import Out, Running, sources_option
 from studies.kit.jobs import Job, Row, answer
-from studies.kit.options import Running
-from studies.kit.run import exit_code, makers_of, run
+from studies.kit.run import exit_code, makers_of, place_of, run
 from studies.kit.say import as_text
 from studies.kit.store import Store, provenance_of
-from studies.kit.tables import read_table, tables_of, write_text
+from studies.kit.tables import read_table, split, tables_of, write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,13 +37,14 @@ def _nothing(tables: Tables) -> Mapping[str, Any]:
     return {}
 
 
+def stages(*functions: Callable[..., Any]) -> dict[str, Any]:
+    """Return the stages of a study by their names, as `Study` takes them."""
+    return {function.__name__: function for function in functions}
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
-    """A study: its finding and its figures are made of its tables alone.
-
-    A measure runs in a process that may end without an answer; `studies.kit.jobs.ask` then returns
-    a failure.
-    """
+    """A study: its finding and its figures are made of its tables alone."""
 
     name: str  # of its command, and of the folder of a report that holds its results
     question: str
@@ -54,7 +54,8 @@ class Study:
     quick: str = ""  # what --quick leaves out; without it, there is no such option
     jobs: Callable[..., Sequence[Job]]  # (sources, quick[, options]), in the order of the rows
     measure: Callable[[Job], Row] = answer  # columns after labels and source, outcome among them
-    tabulate: Callable[[pd.DataFrame], Tables]  # of its rows
+    split: str = ""  # a label whose values are tables: `tabulate` then takes the rows of each
+    tabulate: Callable[[Any], Tables]  # of its rows
     finding: Callable[[Tables], str]  # what its tables show, in a sentence
     shown: Callable[[Tables], Tables] = _nothing  # short tables beside the finding, by their titles
     figures: Callable[[Tables], Figures] = _nothing
@@ -68,7 +69,7 @@ class Study:
         """Return its command: the function whose parameters are the command's options."""
         taken: dict[str, tuple[Any, Any]] = {"out": (Out, inspect.Parameter.empty)}
         if self.options is not None:
-            taken["options"] = (self.options, self.options())
+            taken["options"] = (Annotated[self.options, Parameter(name="*")], self.options())
         if self.sources:
             taken["sources"] = (Annotated[tuple[str, ...], SHARED, sources_option()], self.sources)
         if self.quick:
@@ -89,24 +90,17 @@ class Study:
         folded = f"Options of every study (`rocking help run`): {' '.join(shared)}."
         command.__doc__ = f"{self.question}\n\n{self.help}\n\n{folded}"
         command.__annotations__ = {name: hint for name, (hint, _) in taken.items()}
+        of = partial(inspect.Parameter, kind=inspect.Parameter.KEYWORD_ONLY)
         command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
-            [
-                inspect.Parameter(
-                    name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint
-                )
-                for name, (hint, default) in taken.items()
-            ]
+            [of(name, default=it, annotation=hint) for name, (hint, it) in taken.items()]
         )
         return command
 
     def carry_out(self, out: Path, jobs: Sequence[Job], running: Running, **asked: Any) -> int:
-        """Run into a folder what it does not hold yet; write and print what that shows.
-
-        The provenance says what was asked. Returned is 1 if some rows failed that are needed, or 0.
-        """
+        """Run into a folder what it does not hold yet; write and print what that shows."""
         with Store(out, self.name, self.rows) as store:
             rows = run(jobs, self.measure, place_of(running), store, running.also or ())
-            tables = self.tabulate(pd.DataFrame(rows))
+            tables = self.tabulate(split(rows, self.split) if self.split else pd.DataFrame(rows))
             store.finish(tables, makers_of(jobs, self.measure), len(rows), **asked)
         print(self.tell(out))
         return exit_code(self.needed(rows))
@@ -119,10 +113,10 @@ class Study:
     def tell(self, folder: Path) -> str:
         """Draw the figures of a folder and write its finding, from its tables; return the text."""
         tables = self.read(folder)
-        if drawn := self.figures(tables):
-            from studies.kit.pictures import save_all
+        for name, drawing in self.figures(tables).items():
+            from studies.kit.pictures import save
 
-            save_all(dict(drawn), folder)
+            save(drawing, folder / f"{name}.png")
         text = as_text(self.finding(tables), self.shown(tables))
         write_text(folder / "findings.txt", text + "\n")
         return text
@@ -150,3 +144,27 @@ class Study:
         """Return what is seen in a figure, by the longest beginning of its name that has words."""
         known = [start for start in self.captions if figure.startswith(start)]
         return self.captions[max(known, key=len)] if known else figure
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A statement, whether it holds, and the numbers that decide it."""
+
+    statement: str
+    holds: bool | None
+    numbers: str
+
+
+Check: TypeAlias = "Callable[[pd.DataFrame], tuple[bool, str]]"
+"""Says of a table whether a statement holds, and the numbers."""
+
+
+def claim(statement: str, *needs: str) -> Callable[[Check], Callable[[pd.DataFrame], Finding]]:
+    """Return what makes of a check the test of a statement, which needs some sources."""
+
+    def tested(check: Check, table: pd.DataFrame) -> Finding:
+        if not set(table["source"]).issuperset(needs):
+            return Finding(statement, None, f"needs the sources {', '.join(needs)}")
+        return Finding(statement, *check(table))
+
+    return lambda check: partial(tested, check)

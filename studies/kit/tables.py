@@ -6,9 +6,11 @@ import gzip
 import hashlib
 import os
 from base64 import b64decode, b64encode
-from collections.abc import Iterable, Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -45,14 +47,12 @@ def write_table(path: Path, table: pd.DataFrame) -> None:
     write_text(path, table.to_csv(index=False, na_rep="nan"))
 
 
-def with_head(table: pd.DataFrame, study: str, name: str) -> pd.DataFrame:
-    """Return a table of a study; one that has no columns with those of the published one."""
-    if len(table.columns):
-        return table
-    columns = Path(__file__).parents[1] / "published" / "columns.csv"
-    known = pd.read_csv(columns, keep_default_na=False)
-    mine = known["table"].isin([f"{study}/{name}.csv{end}" for end in ("", PACKED)])
-    return pd.DataFrame(columns=known.loc[mine, "column"].drop_duplicates())
+def split(rows: Iterable[Mapping[str, Any]], label: str) -> dict[str, pd.DataFrame]:
+    """Return the rows of each value of a label as a table, with the columns that they have."""
+    found = defaultdict[str, list[Mapping[str, Any]]](list)
+    for row in rows:
+        found[row[label]].append(row)
+    return {name: pd.DataFrame(of) for name, of in found.items()}
 
 
 def read_table(path: Path, *words: str) -> pd.DataFrame:

@@ -18,7 +18,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
-from studies.kit.postponed import postpone
+from studies.kit.app import postpone
 from studies.kit.say import one_line
 
 MEMORY_BYTES = 4_000_000_000

@@ -94,10 +94,7 @@ def cheapest_kept(
 
 
 def cheapest_below(lines: pd.DataFrame, target: float) -> pd.Series[Any] | None:
-    """Return the fastest setting, among those of methods, whose largest error is below a target.
-
-    The lines are those of work-precision.csv, or `joint` ones.
-    """
+    """Return the fastest setting, among those of methods, whose largest error is below a target."""
     keeps = (lines["failed"] == 0) & (lines["max_error"] <= target)
     return cheapest_kept(lines, keeps, lines["method"])
 

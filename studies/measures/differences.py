@@ -9,15 +9,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analytic import (
-    RockingFrame,
-    condition_numbers,
-    conditioning,
-    peak_ratios,
-    sensitivities,
-    sensitivity,
-)
-from analytic.frame import Rocker
+from analytic import condition_numbers, conditioning, peak_ratios, sensitivities, sensitivity
+from analytic.frame import Rocker, RockingFrame
 from analytic.motion import FloatArray, Motion
 from analytic.response import Outcome, Response
 from studies.cases.paper import PULSES
@@ -66,10 +59,7 @@ Posed: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
 
 def posed_cases(cases: pd.DataFrame) -> Posed:
-    """Return the first four arguments of `peak_ratios`.
-
-    The cases have columns aspect and omega_over_p, amplitude_g or excess_g, half_cycles or pulse.
-    """
+    """Return the first four arguments of `peak_ratios`."""
     steepness = 1.0 / cases["aspect"].to_numpy(float)
     amplitude = cases["amplitude_g"] if "amplitude_g" in cases else steepness + cases["excess_g"]
     half_cycles = cases["half_cycles"] if "half_cycles" in cases else cases["pulse"].map(PULSES)
@@ -98,9 +88,7 @@ def conditioning_of_one(
 ) -> dict[str, float]:
     """Return the condition number kappa and the sensitivity of an exact peak; nan where it failed.
 
-    kappa, by the scale of the motion, is nan unless the block rocks and survives. The sensitivity
-    is inf where a small change of the motion or of eta changes the outcome, else 0 of a block that
-    stays at rest or overturns. See EQUATIONS.md, "Condition numbers".
+    See EQUATIONS.md, "Condition numbers".
     """
     if exact.outcome is Outcome.FAILED:
         return {"kappa": math.nan, "sensitivity": math.nan}

@@ -25,8 +25,8 @@ BOUNDED = 0.95
 """Part of the random cases whose error a factor bounds."""
 MOST_TRUSTED = 30.0
 """A larger factor is no bound: the estimate does not see the error."""
-CALIBRATE, TEST = "calibrate", "test"
-"""What a random case is for: to find the factors, or to try them."""
+TEST, CALIBRATE = USES = "test", "calibrate"
+"""What a random case is for: to try the factors, or to find them."""
 
 NO_BOUND = "no bound"
 ELSEWHERE = "the factor was found at the preset's own step"
@@ -54,11 +54,7 @@ def step_of(job: Job) -> float:
 
 
 def estimate_of(row: Mapping[Any, Any], finer: Mapping[Any, Any]) -> float:
-    """Return the relative difference of a peak from that at half the step.
-
-    It is inf where half the step has another outcome, nan where one of the two failed, 0 where the
-    block stays at rest or overturns in both.
-    """
+    """Return the relative difference of a peak from that at half the step."""
     outcomes = row["outcome"], finer["outcome"]
     if Outcome.FAILED.value in outcomes:
         return math.nan
@@ -110,13 +106,9 @@ def interval(over: FloatArray) -> tuple[float, float]:
 
 
 class Trust(NamedTuple):
-    """What published random cases say of a source's estimates.
+    """What published random cases say of a source's estimates."""
 
-    The factor that bounds the errors of `BOUNDED` of them is the upper end of its 95 % interval,
-    inf where the cases are too few for one.
-    """
-
-    factor: float
+    factor: float  # the upper end of its 95 % interval; inf where the cases are too few for one
     cases: int
 
     def warning(self) -> str:
@@ -131,10 +123,7 @@ class Trust(NamedTuple):
 
 
 def published_trust(source: str) -> Trust | None:
-    """Return what was published of a source's estimates, if anything; refuse an edited table.
-
-    An engine's best preset may be named or not.
-    """
+    """Return what was published of a source's estimates, if anything; refuse an edited table."""
     if not FACTORS.is_file():
         return None
     check(FACTORS.parent, [FACTORS.name], "the folder of the factors")

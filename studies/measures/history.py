@@ -47,11 +47,7 @@ def energy(block: Rocker, history: History) -> FloatArray:
 
 
 def flights(block: Rocker, motion: Motion, response: Response) -> list[FloatArray]:
-    """Return the energies of the samples between two impacts, after the ground motion.
-
-    Left out are the samples next to an impact, those in the part NEAR of a flight at either end,
-    and what follows the last impact.
-    """
+    """Return the energies of the samples between two impacts, after the ground motion."""
     history = response.history
     if history is None or len(history.time) < 2:
         return []
@@ -70,9 +66,8 @@ def flights(block: Rocker, motion: Motion, response: Response) -> list[FloatArra
 def growth(block: Rocker, motion: Motion, response: Response) -> float:
     """Return the largest rise of energy in free rocking, after the motion, over its largest value.
 
-    A rise is counted from the least energy before it, through all flights and impacts: free rocking
-    of a rigid block can only lose energy. 0 where it never rises; nan where no flight to an impact
-    has two samples that are further from its ends than a part NEAR of it.
+    A rise is counted from the least energy before it: free rocking can only lose energy. It is nan
+    where no flight is long enough to tell.
     """
     parts = flights(block, motion, response)
     if not parts:

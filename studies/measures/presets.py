@@ -70,11 +70,6 @@ def pasted_of(engine: str) -> str:
     return PASTED if PASTED in [use.name for use in ENGINES[engine].presets] else BEST
 
 
-def in_words(preset: str) -> str:
-    """Return a preset as part of a sentence."""
-    return look_of(preset).words
-
-
 def in_order(names: Iterable[str]) -> list[str]:
     """Return presets from the libraries' own to the best there is, others before the last."""
     *first, last = PRESETS

@@ -1,20 +1,16 @@
-"""One full run of every study, as this project keeps it.
-
-Where it is, what its columns mean, and what its tables know of every setting of the engines.
-"""
+"""One full run of every study, as this project keeps it."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from engines import ENGINES
-from engines.declaration import Preset
 from studies.cases.paper import sweep_cases
 from studies.measures.costs import joint
 from studies.measures.presets import uses_of
@@ -27,14 +23,10 @@ COLUMNS = Path(__file__).with_name("columns.csv")
 (a count) or number; its unit, "-" without one; and its meaning."""
 
 
-@cache
-def columns() -> dict[tuple[str, str], tuple[str, ...]]:
+def columns() -> dict[Any, list[str]]:
     """Return what COLUMNS says of a column, by table (empty: any) and name."""
-    lines = pd.read_csv(COLUMNS, keep_default_na=False)
-    return {
-        (str(table), str(name)): tuple(map(str, about))
-        for table, name, *about in lines.itertuples(index=False, name=None)
-    }
+    lines = pd.read_csv(COLUMNS, keep_default_na=False).set_index(["table", "column"])
+    return dict(zip(lines.index, lines.to_numpy().tolist(), strict=True))
 
 
 def dictionary(published: Path) -> pd.DataFrame:
@@ -100,17 +92,15 @@ def _of_paper(published: Path, engines: Sequence[str]) -> pd.DataFrame:
         {
             "engine": [source.engine for source in asked],
             "preset": [source.preset for source in asked],
-            "value": [declared_value(source.used) for source in asked],
+            "value": [
+                float(getattr(use.settings, use.accuracy_knob[0]))
+                if use.accuracy_knob
+                else use.ordinary_step()
+                for use in (source.used for source in asked)
+            ],
             "wall_s": lines["wall_s"] / lines["cases"],
             "runs": 1,
             "cases": lines["cases"],
             "max_error": lines["max_error"].where(lines["agree"] == lines["cases"], math.inf),
         }
     )
-
-
-def declared_value(preset: Preset) -> float:
-    """Return p dt, or the accuracy knob, as a preset is declared; nan for a step in seconds."""
-    if preset.accuracy_knob is not None:
-        return float(getattr(preset.settings, preset.accuracy_knob[0]))
-    return preset.ordinary_step()

@@ -1,7 +1,5 @@
 """The model check: what a world does with one block, beside what it must do, seen from outside."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import closing
@@ -89,10 +87,7 @@ def in_the_air(source: Source) -> Iterator[Line]:
 
 
 def on_the_base(source: Source) -> Iterator[Line]:
-    """Yield how a block rebounds from its base, and where it turns that is pulled past its onset.
-
-    It is thrown some millimetres up, falls flat, and is pulled along once it stands.
-    """
+    """Yield how a block rebounds from its base, and where it turns when pulled past its onset."""
     pulls = [(0.0, PULL)] * 4 + [WEIGHT] * 196 + [(2.0 * ONSET, -G)] * 100
     _, poses = moved(source, pulls, each=steps_of(source))
     speed = np.diff(poses[:200, 1]) / DT_S
@@ -138,10 +133,7 @@ def in_contact(source: Source) -> Iterator[Line]:
 
 
 def check(source: Source) -> list[Line]:
-    """Return what a world shows: of the preset that `checked` names all, of others what refuses.
-
-    Where a line refuses, the contact is not looked at.
-    """
+    """Return what a world shows: of the preset that `checked` names all, of others what refuses."""
     with np.errstate(all="ignore"):  # what never moves has no rebound: nan, which is wrong
         lines = list(in_the_air(source))
         if source.used.stepping is Stepping.OWN:

@@ -40,10 +40,7 @@ ANSWERS = tuple(outcome.value for outcome in (Outcome.AT_REST, Outcome.ROCKED, O
 def kinds_of(
     found: ArrayLike, peak: ArrayLike, right: ArrayLike, exact_peak: ArrayLike
 ) -> NDArray[np.str_]:
-    """Return for each outcome and peak the kind of wrongness, empty where it is right.
-
-    It is a ValueError if the exact solution has no outcome.
-    """
+    """Return for each outcome and peak the kind of wrongness, empty where it is right."""
     mine, exact = np.broadcast_arrays(np.asarray(found, object), np.asarray(right, object))
     if not np.isin(exact, ANSWERS).all():
         raise ValueError(f"an exact outcome is none of {', '.join(ANSWERS)}")

@@ -19,7 +19,7 @@ from studies.advise import cheapest, pairs
 from studies.advise import unadvised as not_advised
 from studies.kit.identity import NOT_INSTALLED
 from studies.kit.say import capital, duration, listed, number, part, signed
-from studies.kit.store import engines_of, provenance_of, whole_runs
+from studies.kit.store import engines_of, provenance_of
 from studies.kit.tables import table_in
 from studies.measures.costs import cost_text
 from studies.measures.presets import titled
@@ -50,21 +50,16 @@ def presets(published: Path) -> pd.DataFrame:
 
 
 def by_engine(published: Path) -> list[list[str]]:
-    """Return the cells of the README's table, a row for each engine.
-
-    They are wrong outcomes, median error and its share of theta_cr with default settings and a
-    moving floor; the first two with a floor at rest; wrong outcomes, largest error and time of the
-    tuned preset; largest error and time of landing, or of the engine's own steps.
-    """
+    """Return the cells of the README's table, a row for each engine."""
     rows = []
     for name, lines in presets(published).groupby("engine", sort=False):
         known = {str(line["preset"]): line for line in lines.to_dict("records")}
         cells = [f"<b>{TITLES[str(name)]}</b>"]
         moving, rests, tuned = (known[preset] for preset in (DEFAULT, AT_REST, "tuned"))
-        cells += [_wrong(moving), part(moving["median"]), part(moving["share"])]
-        cells += [_wrong(rests), part(rests["median"])]
+        cells += [wrong(moving), part(moving["median"]), part(moving["share"])]
+        cells += [wrong(rests), part(rests["median"])]
         best = ENGINES[str(name)].best
-        cells += [_wrong(tuned), part(tuned["max"]), f"{tuned['ms']:.0f} ms"]
+        cells += [wrong(tuned), part(tuned["max"]), f"{tuned['ms']:.0f} ms"]
         if best.name == "tuned":
             cells += ["–", "–"]
         else:
@@ -74,7 +69,8 @@ def by_engine(published: Path) -> list[list[str]]:
     return rows
 
 
-def _wrong(line: Line) -> str:
+def wrong(line: Line) -> str:
+    """Return how many outcomes of a line are wrong."""
     return str(sum(line[kind] for kind in KINDS))
 
 
@@ -121,11 +117,7 @@ def advised(published: Path) -> list[list[str]]:
 
 
 def pasted(published: Path) -> list[dict[str, Any]]:
-    """Return what pasted lines are worth, for each engine and step, and the lines.
-
-    Cells are of a step with the place of its lines, errors, wrong outcomes, turns, slips and run
-    time, by default and pasted; own says whether the step is the library's own.
-    """
+    """Return what pasted lines are worth, for each engine and step, and the lines."""
     known = table_in(published / "advice", "lines", "literal")
     found: list[dict[str, Any]] = []
     for engine, dt_s, *both in pairs(table_in(published / "advice", "advice")):
@@ -133,7 +125,7 @@ def pasted(published: Path) -> list[dict[str, Any]]:
         place, title = f"{engine}-{1e6 * dt_s:.0f}", f"{TITLES[engine]}, {duration(dt_s)}"
         cells = [
             (part(line["median_error"]), part(line["max_error"]), part(line["median_difference"]),
-             _wrong(line), part(line["ill_max_error"]), number(line["yaw_deg"]),
+             wrong(line), part(line["ill_max_error"]), number(line["yaw_deg"]),
              part(line["slip_widths"]), duration(line["wall_s"])) for line in both
         ]  # fmt: skip
         found.append(
@@ -155,11 +147,7 @@ def unadvised(published: Path) -> dict[str, str]:
 
 
 def lags(published: Path) -> list[list[str]]:
-    """Return how much of the defaults' error is a moving floor's, a row for each engine.
-
-    Of the paper's cases that survive in both and exactly: the median error on a moving floor, on
-    one at rest, and the median difference of the two peaks over the exact one.
-    """
+    """Return how much of the defaults' error is a moving floor's, a row for each engine."""
     rows, case = table_in(published / "presets", "sweep"), [*CASE]
     rows = rows[(rows["outcome"] == "rocked") & (rows["peak_ratio"] > 0.0)]
     peaks = rows.pivot(index=case, columns="source", values="peak_ratio")
@@ -191,7 +179,8 @@ def made(published: Path) -> dict[str, str]:
 
 def lasts(*records: Mapping[str, Any]) -> str:
     """Return how long the sweep takes, at the first run after an installation and later."""
-    runs = [run for record in records for run in whole_runs(record)]
+    every = [run for record in records for run in record["runs"]]
+    runs = [run for run in every if run.get("computed") == run.get("rows")]  # whole ones
     times = {bool(run.get("first")): f"{run['duration_s']:.0f} s" for run in runs}
     first, later = (times.get(kind, "a time that was not measured") for kind in (True, False))
     return f"{first} the first time, when its functions are compiled, and for {later} later"

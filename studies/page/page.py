@@ -19,9 +19,9 @@ from studies.kit.say import number, part
 from studies.kit.store import engines_of, provenance_of
 from studies.kit.tables import table_in, write_text
 from studies.measures.presets import in_order, look_of
-from studies.measures.wrongness import KINDS, MEANINGS, WORDS
+from studies.measures.wrongness import MEANINGS, WORDS
 from studies.page.chapters import CHAPTERS, PARTS, Part
-from studies.page.facts import presets
+from studies.page.facts import presets, wrong
 from studies.sources.registry import resolve
 from studies.sweep import STUDY as SWEEP
 
@@ -57,7 +57,10 @@ def first_sight(folder: Path) -> dict[str, Any]:
     names = in_order(lines["preset"])
     tiles = {}
     for engine, group in lines.groupby("engine", sort=False):
-        mine = {line["preset"]: _tile(line) for line in group.to_dict("records")}
+        mine = {
+            line["preset"]: [wrong(line), part(line["median"]), part(line["max"])]
+            for line in group.to_dict("records")
+        }
         tiles[ENGINES[str(engine)].title] = [mine.get(name) for name in names]
     place = "presets" if (folder / "presets").is_dir() else "sweep"
     return {
@@ -67,11 +70,6 @@ def first_sight(folder: Path) -> dict[str, Any]:
         "presets": [look_of(name).short for name in names],
         "tiles": tiles,
     }
-
-
-def _tile(line: dict[Any, Any]) -> dict[str, str]:
-    wrong = str(sum(line[kind] for kind in KINDS))
-    return {"wrong": wrong, "median": part(line["median"]), "max": part(line["max"])}
 
 
 def _section(one: Part, folder: Path, full: bool) -> dict[str, Any]:

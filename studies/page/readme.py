@@ -24,7 +24,7 @@ from studies.kit.store import check, versions, write_record
 from studies.kit.tables import read_table, tables_of, write_table, write_text
 from studies.measures.costs import RETIRED, STEPPED
 from studies.measures.history import samples
-from studies.measures.presets import engine_of, in_words
+from studies.measures.presets import engine_of, look_of
 from studies.measures.published import dictionary
 from studies.measures.wrongness import MEANINGS, WORDS
 from studies.page import facts
@@ -55,8 +55,8 @@ def command(*, root: Path = Path()) -> int:
     root
         The project's folder.
     """
-    from studies.drawing.block import draw_hero
-    from studies.kit.pictures import save_all
+    from studies.drawing.film import draw_hero
+    from studies.kit.pictures import save
 
     published, folder = root / PUBLISHED, root / PUBLISHED / "hero"
     if not published.is_dir():
@@ -69,7 +69,7 @@ def command(*, root: Path = Path()) -> int:
     write_record(folder, {"study": "readme", **versions({})})
     histories = read_table(folder / "hero.csv")
     drawn = histories[~histories["source"].isin(MOVING)]
-    save_all({"hero": draw_hero(BLOCK, drawn, summary(drawn))}, folder)
+    save(draw_hero(BLOCK, drawn, summary(drawn)), folder / "hero.png")
     for path, text in pages(root).items():
         write_text(path, text)
         print(path)
@@ -126,7 +126,7 @@ def pages(root: Path) -> dict[Path, str]:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    filters = (capital, duration, in_words, part, row)
+    filters = (capital, duration, look_of, part, row)
     environment.filters |= {each.__name__: each for each in filters}
     chapters = {
         title: [_told(one, published / one.folder) for one in parts if one in known]

@@ -36,34 +36,23 @@ class UnknownSourceError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Who answers a question; it can be sent to another process or machine.
-
-    Attributes
-    ----------
-    kind : {"model", "solver", "peer", "engine"}
-    call : callable
-        ``(block, motion, *, duration, times, **options) -> Response``.
-    engine, preset : str
-        Names; empty where it is no engine. The preset is by default that of the best there is.
-    stepping : bool
-        Whether it has an option `step`, p dt; `accurate` ones have an option `accuracy`.
-    name : str
-        By which it was asked for.
-    """
+    """Who answers a question; it can be sent to another process or machine."""
 
     kind: Kind
-    call: Callable[..., Response]
+    call: Callable[..., Response]  # (block, motion, *, duration, times, **options)
     engine: str = ""
-    preset: str = ""
-    stepping: bool = False
-    name: str = ""
+    preset: str = ""  # by default that of the best there is
+    stepping: bool = False  # whether it has an option `step`, p dt
+    name: str = ""  # by which it was asked for
 
     def check(self, block: System, motion: Motion, **options: Any) -> None:
         """Refuse what it cannot be asked, before it is, by a TypeError or ValueError."""
         if isinstance(block, SlidingBlock) and not self.engine and self.name != "exact":
             raise ValueError(f"{self.name} solves what rocks, and this block slides")
-        if isinstance(block, RigidBlock) and not block.is_even and self.kind != "model":
-            raise ValueError(f"{self.name} takes no block with an offset; only models do")
+        if isinstance(block, RigidBlock) and not (
+            block.is_even or self.engine or self.kind == "model"
+        ):
+            raise ValueError(f"{self.name} takes no block with an offset; models and engines do")
         if getattr(self.call, "func", None) is run_engine:
             self.declared.use(scene_of(block, motion, self.preset, **options))
             return
@@ -96,11 +85,7 @@ class Source:
 def run_engine(
     block: System, motion: Motion, *, engine: str, preset: str | None, **options: Any
 ) -> Response:
-    """Build the scene, as `scene_of` does, and let the engine run it.
-
-    The response is failed, with its reason, where the engine is not installed or cannot do what is
-    asked; ValueError if it has no such preset or setting.
-    """
+    """Build the scene, as `scene_of` does, and let the engine run it."""
     from engines.run.run import run
 
     scene = scene_of(block, motion, preset, **options)
@@ -115,11 +100,7 @@ def scene_of(
     times: ArrayLike | None = None,
     **options: Any,
 ) -> Scene:
-    """Return the scene that an engine is asked about, with other options of `Scene` by name.
-
-    The preset is by default the best that the scene allows. ValueError if there is no such option,
-    or a value is not allowed.
-    """
+    """Return the scene that an engine is asked about, with other options of `Scene` by name."""
     allowed = [item.name for item in fields(Scene) if item.name not in NOT_OPTIONS]
     for name in options:
         one_of("option", name, allowed)
@@ -155,10 +136,7 @@ def announce(place: str, name_of: Callable[[str], str] = named) -> str:
 
 
 def resolve(name: str) -> Source:
-    """Return the source called `name`, which may be an engine with a preset after a colon.
-
-    UnknownSourceError if there is no such source or preset; the message lists what there is.
-    """
+    """Return the source called `name`, which may be an engine with a preset after a colon."""
     plain, colon, preset = name.partition(":")
     source = SOURCES.get(plain)
     if source is None:

@@ -35,11 +35,7 @@ def solve_ivp_response(
     duration: float | None = None,
     times: FloatArray | None = None,
 ) -> Response:
-    """Solve the exact model with `scipy.integrate.solve_ivp`, its events and one of its methods.
-
-    The absolute tolerance is that of a rotation of a thousandth of alpha. The response's steps are
-    evaluations of the right-hand side.
-    """
+    """Solve the exact model with `scipy.integrate.solve_ivp`, its events and one of its methods."""
     from scipy.integrate import solve_ivp
 
     posed = pose(block, motion, "exact", start, duration, times)
@@ -70,10 +66,7 @@ def solve_ivp_response(
 
 @dataclass
 class _March:
-    """One response: the rotation folded to one side, time in units of 1/p, acceleration in g.
-
-    It is followed until a time, which is inf where the peak is to be decided.
-    """
+    """One response: the rotation folded to one side, time in units of 1/p, acceleration in g."""
 
     solve: Callable[..., Any]
     posed: Posed

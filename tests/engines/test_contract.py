@@ -10,13 +10,14 @@ from declared import run
 from known import Bare, ScriptedWorld
 from uses import BLOCK, CORE, HERE, SHAKEN, every_use, held_frames, pulse, rocked, scene
 
-from analytic import RockingFrame, SlidingBlock
+from analytic import RigidBlock, RockingFrame, SlidingBlock
 from analytic.response import Outcome, Reason
 from engines import ENGINES
 from engines.run.run import build, simulate_world
 from engines.world import Pose
 
 SIZE = {"width": 0.5, "height": 1.5}
+UNEVEN = RigidBlock(**SIZE, offset=0.1)
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -59,6 +60,8 @@ def test_a_library_that_is_missing_is_a_row_that_says_how_to_install_it(name):
             {"system": SlidingBlock(**SIZE, friction=0.2), "preset": "landing"},
             "nothing rocks here",
         ),
+        ({"offsets": False}, {"system": UNEVEN, "preset": "tuned"}, "PyBullet is not built here"),
+        ({}, {"system": UNEVEN, "preset": "landing"}, "pybullet:landing is not built here"),
         ({}, {"rest_s": 0.2, "preset": "landing"}, "only equal steps can begin before"),
     ],
 )

@@ -13,7 +13,7 @@ from engines.mujoco import TUNED
 from engines.mujoco.build import MujocoSettings
 from engines.pybullet.build import BulletSettings, BulletWorld
 from studies.cases.paper import chosen_cases
-from studies.cases.variants import variants
+from studies.contact import variants
 
 CASE = chosen_cases(True)["typical"][3]
 VARIANTS = [variant for engine in installed_engines() for variant in variants(engine)]

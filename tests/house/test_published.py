@@ -15,7 +15,7 @@ from engines import ENGINES, installed_engines
 from studies import overturning, respond, restitution, scenes, sweep
 from studies.cases.drawn import RandomCase
 from studies.cases.paper import Case
-from studies.kit.pictures import save_all
+from studies.kit.pictures import save
 from studies.kit.run import makers_of
 from studies.kit.store import Store, provenance_of
 from studies.linearizations import errors_on, line
@@ -71,9 +71,7 @@ def test_nothing_is_computed_again_in_a_published_folder(name, tmp_path):
 
 
 FOLLOWING = {
-    "scenes": lambda found: scenes.tabulate(
-        pd.concat([found[name] for name in scenes.LABELS if name in found])
-    ),
+    "scenes": scenes.tabulate,
     "restitution": lambda found: restitution.tabulate(
         found["restitution"].assign(source="", outcome="", message="")
     ),
@@ -135,7 +133,8 @@ def test_cells_of_the_overturning_map_are_what_they_were():
 )
 def test_a_published_picture_is_what_its_tables_draw_today(part, tmp_path):
     folder = PUBLISHED / part.folder
-    save_all(dict(part.study.figures(part.study.read(folder))), tmp_path)
+    for name, drawing in part.study.figures(part.study.read(folder)).items():
+        save(drawing, tmp_path / f"{name}.png")
     assert {path.name for path in tmp_path.iterdir()} == {p.name for p in folder.glob("*.png")}
     for path in tmp_path.iterdir():
         now, before = pixels(path), pixels(folder / path.name)

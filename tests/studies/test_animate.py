@@ -15,10 +15,9 @@ from analytic import RockingFrame, SlidingBlock, Still
 from studies.__main__ import run
 from studies.animate import moved
 from studies.drawing import film as film_module
-from studies.drawing.block import outlines
-from studies.drawing.film import Stage, verdict
+from studies.drawing.film import Stage, outlines, verdict
+from studies.kit.arguments import Yours
 from studies.kit.jobs import Question
-from studies.kit.options import Yours
 
 
 @pytest.fixture(autouse=True)

@@ -17,10 +17,9 @@ from given import BLOCK, FULL_SINE
 
 from engines.registry import FURTHER
 from studies.cases.refusal import BadInputError
-from studies.kit import cluster
-from studies.kit.cluster import on_cluster
+from studies.kit import run as cluster
 from studies.kit.jobs import Job, Question, answer
-from studies.kit.run import local
+from studies.kit.run import local, on_cluster
 from studies.sources.registry import announce
 
 pytestmark = pytest.mark.processes

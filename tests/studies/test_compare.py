@@ -1,4 +1,4 @@
-"""A comparison: in JSON, as a table, from Python; of a frame and a slide; its notes."""
+"""A comparison: in JSON, as a table, from Python, as a picture; of a frame and a slide."""
 
 import json
 import math
@@ -8,6 +8,7 @@ import pytest
 from commanding import CASE, ROOT, compared, python
 from given import BLOCK, PULSE
 
+import studies
 from analytic import RockingFrame, SinePulse, SlidingBlock, Still, simulate
 from studies import respond, side_by_side
 from studies.__main__ import run
@@ -252,3 +253,22 @@ def test_the_guide_s_python_runs_as_a_script_of_one_s_own(tmp_path):
     exact, engine = json.loads(line)
     assert exact == pytest.approx(simulate(BLOCK, PULSE).peak_ratio, rel=1e-12)
     assert 0.0 < engine < 1.0
+
+
+def test_responses_with_a_history_are_a_picture_of_as_many_lines():
+    exact, engine = [studies.respond(n, BLOCK, PULSE, history=True) for n in ("exact", "mujoco")]
+    assert exact.history.time.size == 1001 and engine.history.time.size > 900
+    assert len(studies.plot(exact).axes[0].lines) == 1
+    drawing = studies.plot([exact, engine])
+    assert len(drawing.axes[0].lines) == 2
+    assert drawing._repr_png_().startswith(b"\x89PNG")
+    for given in (studies.respond("exact", BLOCK, PULSE), []):
+        with pytest.raises(ValueError, match=r"response 1 has no history|responses is empty"):
+            studies.plot(given)
+
+
+@pytest.mark.parametrize("number", [4, pytest.param(6, marks=pytest.mark.slow)])
+def test_figures_of_the_paper_are_pictures(number):
+    assert studies.figure(number)._repr_png_().startswith(b"\x89PNG")
+    with pytest.raises(ValueError, match="figure is 3"):
+        studies.figure(3)

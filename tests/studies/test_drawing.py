@@ -7,7 +7,7 @@ import pytest
 from matplotlib.text import Text
 
 from engines import ENGINES
-from studies.drawing.linearizations import ONSETS
+from studies.drawing.figures import ONSETS
 from studies.drawing.overturning import VERDICTS
 from studies.drawing.styles import ENGINE_COLOURS, ENGINE_MARKERS, STYLES, look_at, title_of
 from studies.kit.pictures import lay_out

@@ -13,6 +13,7 @@ from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Stepping
 from studies import precision
 from studies.kit.run import run
+from studies.kit.tables import split
 from studies.measures.costs import LEAST_RUNS, LEAST_S, best_of, cost_text, enough
 from studies.precision import SCENES, STUDY, cheapest, jobs, measure
 
@@ -87,7 +88,7 @@ def test_a_wrong_outcome_is_an_infinite_error_and_each_table_has_its_rows():
     assert not few("pymunk", **free)  # it has none
     asked += few("mujoco", **free)
     rows = run(asked, measure)
-    tables = STUDY.tabulate(pd.DataFrame(rows))
+    tables = STUDY.tabulate(split(rows, "table"))
     found = tables["work-precision"].set_index("method")["max_error"]
     assert found["housner, closed form"] == math.inf
     assert found["Taylor series"].min() < 1e-9 < 1e-3 < found["Taylor series"].max()

@@ -1,17 +1,24 @@
-"""README.md and the page of the published results: what the tables say, and nothing else."""
+"""README.md, its pages and the published tables: what they say, and commands that they print."""
 
+import csv
+import gzip
 import re
+import shlex
 import shutil
+import tomllib
 
 import pandas as pd
 import pytest
 from commanding import PAGES, PROSE, PUBLISHED_PAGES, ROOT
 
 from engines.factors import BEST, LEFT_OUT
+from studies.__main__ import COMMANDS, GROUPS, run
+from studies.kit.app import make_app
+from studies.measures.published import columns
 from studies.page import facts, readme
+from studies.page.chapters import PARTS
 
 PUBLISHED = ROOT / readme.PUBLISHED
-TABLES = ("studies/published/columns.csv",)
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +26,7 @@ def pages():
     return readme.pages(ROOT)
 
 
-@pytest.mark.parametrize("name", (*PAGES, *TABLES))
+@pytest.mark.parametrize("name", (*PAGES, "studies/published/columns.csv"))
 def test_a_page_says_what_the_published_tables_say(name, pages):
     assert pages[ROOT / name] == (ROOT / name).read_text("utf-8"), "run `rocking readme`"
 
@@ -110,3 +117,120 @@ def test_the_first_picture_is_of_the_case_that_it_names():
     assert lines.loc["exact", "peak_ratio"] == pytest.approx(0.3852, abs=5e-5)
     assert lines.loc["housner", "outcome"] == "overturned"
     assert set(lines.index) == set(readme.SOURCES)
+
+
+def commands(name):
+    """Return the commands that a page prints in its blocks, in their order."""
+    blocks = re.findall(
+        r"```(?:sh|yaml)\n(.*?)```", (ROOT / name).read_text(encoding="utf-8"), re.S
+    )
+    return [
+        line for block in blocks for line in re.findall("^ *(?:- run: )?(rocking .*)", block, re.M)
+    ]
+
+
+def taken(arguments):
+    """Let the command line take arguments, all of them, without running anything."""
+    app = make_app(GROUPS, arguments[0])
+    _, bound, ignored = app.parse_args(arguments, exit_on_error=False)
+    assert bound.arguments and not ignored
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.folder)
+@pytest.mark.parametrize("full", [True, False])
+def test_the_command_of_a_part_is_taken(part, full):
+    taken(part.words("DIR", full))
+
+
+QUICK = ("advise", "export", "blocks", "compare")
+
+
+@pytest.mark.parametrize("command", commands("README.md"))
+def test_a_command_of_the_readme_works_as_printed(command, tmp_path, monkeypatch, capsys):
+    """What takes a second is run; of the rest every argument is taken."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "studies").symlink_to(ROOT / "studies")
+    _, *arguments = shlex.split(command)
+    if arguments[0] in QUICK:
+        assert run(arguments) == 0
+        assert capsys.readouterr().out
+    else:
+        taken(arguments)
+
+
+@pytest.mark.parametrize("name", PROSE)
+def test_a_command_within_a_page_is_taken(name):
+    """Whole ones; of a command alone its name."""
+    text = (ROOT / name).read_text(encoding="utf-8")
+    inside = [" ".join(found.split()) for found in re.findall("`(rocking [^`]*)`", text)]
+    for command in (*inside, *(commands(name) if name != "README.md" else ())):
+        _, *arguments = shlex.split(command, comments=True)
+        assert arguments[0] in {*COMMANDS, "COMMAND", "--help"}
+        if len(arguments) > 1 and arguments[0] != "COMMAND":
+            taken(arguments)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    for named in re.findall(r"pip install [^`\n]*'\.\[([\w,]+)\]'", text):
+        assert set(named.split(",")) <= set(project["optional-dependencies"])
+
+
+DICTIONARY = pd.read_csv(PUBLISHED / "columns.csv", keep_default_na=False)
+TABLES = sorted(PUBLISHED.glob("*/*.csv*"))
+
+
+def as_written(path):
+    """Return the head and the rows of a table, every cell a word."""
+    opened = gzip.open if path.suffix == ".gz" else open
+    with opened(path, "rt", newline="", encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    return head, rows
+
+
+def is_of(kind, cell):
+    """Return whether a cell can be read as what the dictionary says."""
+    if kind == "text" or cell == "nan":
+        return True
+    if kind == "boolean":
+        return cell in ("True", "False")
+    return not float(cell) % 1 if kind == "integer" else float(cell) == float(cell)
+
+
+@pytest.mark.parametrize("path", TABLES, ids=lambda path: path.relative_to(PUBLISHED).as_posix())
+def test_the_dictionary_holds_every_column_in_order_and_its_type(path):
+    head, rows = as_written(path)
+    told = DICTIONARY[DICTIONARY["table"] == path.relative_to(PUBLISHED).as_posix()]
+    assert list(told["column"]) == head
+    for name, kind, cells in zip(head, told["type"], zip(*rows, strict=True), strict=True):
+        distinct = set(cells)
+        assert {cell for cell in distinct if not is_of(kind, cell)} == set(), name
+        if kind == "text" and name != "measured":  # its digits count, and there may be none
+            known = {"", "nan"}
+            numbers = {cell for cell in distinct - known if re.fullmatch(r"-?\d*\.\d+", cell)}
+            assert not numbers or distinct - known - numbers, name
+
+
+def test_the_dictionary_holds_nothing_else():
+    assert set(DICTIONARY["table"]) == {path.relative_to(PUBLISHED).as_posix() for path in TABLES}
+    assert set(DICTIONARY["type"]) == {"text", "boolean", "integer", "number"}
+    measured = DICTIONARY["type"] == "number"
+    assert ((DICTIONARY["unit"] != "") == measured).all()
+    assert (DICTIONARY["meaning"] != "").all()
+
+
+def test_what_a_column_means_in_one_table_is_a_column_of_it_and_means_another_thing():
+    stems = {path.relative_to(PUBLISHED).as_posix().partition(".")[0]: path for path in TABLES}
+    lines = pd.read_csv(ROOT / "studies" / "measures" / "columns.csv", keep_default_na=False)
+    assert not lines.duplicated(["table", "column"]).any()
+    for (table, name), told in columns().items():
+        assert not table or name in as_written(stems[table])[0], table
+        assert not table or told != columns().get(("", name))
+
+
+def test_the_line_of_the_guide_reads_a_table():
+    guide = (ROOT / "studies" / "GUIDE.md").read_text(encoding="utf-8")
+    section = guide[guide.index("## The tables as data") :]
+    code = re.search("```python\n(.*?)```", section, re.DOTALL)[1]
+    known = {}
+    exec(code.replace("studies/published", PUBLISHED.as_posix()), known)
+    assert "studies" not in re.findall(r"(?:from|import) (\w+)", code)
+    assert known["summary"]["cases"].max() == 960
+    assert set(known["meaning"].index) == set(known["summary"].columns)

@@ -13,7 +13,7 @@ from records import AT2
 
 from analytic.response import Response
 from studies.__main__ import run
-from studies.kit.options import EffortOptions
+from studies.kit.arguments import EffortOptions
 from studies.sources.registry import SOURCES, Source
 
 REFUSED = """
@@ -78,7 +78,7 @@ compare BLOCK --tilt -1 | --tilt is -1 | balances
 compare BLOCK --tilt 1 --omega 3 | --amplitude missing | requires
 compare BLOCK --tilt 0 | --amplitude and --omega missing | --tilt
 compare --height 1.5 PULSE | --width missing | requires
-compare BLOCK --record X.AT2 --omega 3 | --omega is 3.0; it may be given only without --record
+compare BLOCK --record X.AT2 --omega 3 | --omega is 3; it may be given only without --record
 compare BLOCK --record X.AT2 --scale 2 --pga 1 | --scale is 2 and --pga is 1; give one or the other
 compare BLOCK --record X.AT2 --scale 1e308 | --record times --scale 1e+308 | finite
 compare BLOCK --record X.AT2 --pga 1e308 | --record scaled to --pga 1e+308 | finite
@@ -98,8 +98,8 @@ blocks list.csv --out DIR | --record requires an argument
 
 # a reader's own friction and step
 compare CASE --dt 0.002 | --dt is 0.002; | pybullet takes steps that land on impacts
-compare CASE --dt 0.002 --sources exact | --dt is 0.002; --sources must name a solver
-compare CASE --friction 1 --sources rk4 | --friction is 1; --sources must name at least one engine
+compare CASE --dt 0.002 --sources exact | --dt is 0.002; it may be | names a solver or an engine
+compare CASE --friction 1 --sources rk4 | --friction is 1; it may be | names at least one engine
 compare CASE --friction 99 --sources pybullet | friction is 99.0; it must be from 0 to
 compare CASE --dt 1e-12 --sources rk4 | --dt is 1e-12; it must be at least 3.6
 compare CASE --dt 0.01 --p-dt 0.1 --sources rk4 | --dt is 0.01 and --p-dt is 0.1; give one or the
@@ -115,7 +115,7 @@ animate CASE --out film.gif --scene frame | --load missing
 export CASE --out DIR --engine mujoco --scene slide | --friction missing
 export CASE --out DIR --engine mujoco --scene slide --friction 0.4 | it must be below width/height
 animate CASE --out film.gif --scene slide --friction 0.2 --tilt 0.1 | only where something rocks
-compare CASE --load 2 | --load is 2.0; it may be given only with --scene frame
+compare CASE --load 2 | --load is 2; it may be given only with --scene frame
 compare CASE --scene slide --friction 0 | --friction is 0
 compare CASE --scene slide --friction 0.2 --plot x.png | only where something rocks
 compare CASE --scene slide --friction 0.2 --sources dop853 | 'dop853' cannot be asked so
@@ -138,7 +138,7 @@ restitution --out DIR --engines drake | drake | no coefficient
 restitution --out DIR --quick | --quick
 validate --out DIR --halves --sources exact | 'exact'; with --halves it must be an engine
 validate --out DIR --halves --sources drake | steps that can be halved
-validate --out DIR --sources exact --p-dt 0.1 | --sources must name a solver or an engine
+validate --out DIR --sources exact --p-dt 0.1 | only if --sources names a solver or an engine
 validate --out DIR --scene slide | among block, frame
 validate --out DIR --seed -1 | --seed is '-1'
 
@@ -237,7 +237,7 @@ def test_what_arithmetic_raises_is_one_line_and_what_a_mistake_does_is_not(
     def broken(*_, **__):
         raise error
 
-    monkeypatch.setattr("studies.compare.command.compare", broken)
+    monkeypatch.setattr("studies.compare.compare", broken)
     line = ["compare", *CASE, "--sources", "exact"]
     if error in BY_MISTAKE:
         with pytest.raises(type(error)):

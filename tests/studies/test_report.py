@@ -1,7 +1,8 @@
-"""The chapters, and the page that shows them, in a browser where there is one."""
+"""The chapters, the page that shows them, its equations; in a browser where there is one."""
 
 import itertools
 import json
+import math
 import re
 import shutil
 import subprocess
@@ -9,14 +10,18 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
-from given import BLOCK
+from given import BLOCK, PULSE
 
-from analytic import SinePulse, simulate
+from analytic import RigidBlock, SinePulse, simulate
 from analytic.block import GRAVITY
+from engines.scene import free_rocking_window
+from studies import respond
+from studies.__main__ import run
 from studies.measures.published import PUBLISHED
-from studies.page import page, report
+from studies.page import chapters, page
 from studies.page.chapters import PARTS
 from studies.page.page import AXES, engine_cases
 
@@ -36,11 +41,11 @@ def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     parts = tuple(replace(SMALL_OF[f], quick=words) for f, words in SMALL.items())
     with pytest.MonkeyPatch.context() as patch:
-        for module in (page, report):
+        for module in (page, chapters):
             patch.setattr(module, "PARTS", parts)
         patch.setattr(page, "CHAPTERS", {"A chapter": parts})
         patch.setattr(page, "SHOWN", FEW)
-        assert report.command(out=folder) == 0
+        assert chapters.command(out=folder) == 0
     return folder
 
 
@@ -106,8 +111,8 @@ def test_the_engines_answers_are_those_of_the_tables():
 
 
 def test_a_report_is_resumed_and_not_mixed(made, monkeypatch):
-    with pytest.raises(report.FolderError, match="quick report"):
-        report.command(out=made, full=True)
+    with pytest.raises(chapters.FolderError, match="quick report"):
+        chapters.command(out=made, full=True)
 
 
 AMPLITUDE = 0.43333333 * GRAVITY
@@ -155,3 +160,70 @@ def test_the_page_fits_its_window_and_sorts(made, tmp_path: Path, width):
             BLOCK, SinePulse(amplitude=AMPLITUDE, omega=omega, half_cycles=2)
         ).peak_ratio
         assert f"{peak:.6f}" in words
+
+
+ENGINE = "quickjs"  # it has no wheel for Python 3.13
+SCRIPT = Path(page.__file__).with_name("rocking.js").read_text(encoding="utf-8")
+# the truncation of 400 classical Runge-Kutta steps in a time 1/p, through a few impacts
+TOLERANCE = 1e-7
+
+# (B, H, amplitude in g, rad/s, half cycles), and what the exact solution says
+CASES = [
+    (0.5, 1.5, 0.4, 6.2832, 2, "rocked"),
+    (0.5, 3.0, 0.2, 6.2832, 1, "rocked"),
+    (0.5, 1.0, 0.6, 6.2832, 2, "rocked"),
+    (0.5, 1.5, 0.45, 4.0, 2, "overturned"),
+    (0.5, 1.5, 0.32, 5.0, 2, "at rest"),
+    (0.5, 1.5, 0.34, 5.0, 2, "rocked"),
+    (2.0, 4.0, 4.0, 12.0, 1, "overturned"),
+    (1.0, 1.0, 1.3, 9.0, 3, "rocked"),
+    (0.3, 0.24, 1.5, 9.0, 2, "rocked"),
+    (1.0, 4.0, 0.9, 8.0, 7, "overturned"),
+    (1.0, 4.0, 2.2, 20.0, 2, "rocked"),
+]
+
+
+def by_the_page(block, motion, times):
+    call = (
+        f"rock({block.alpha!r}, {block.restitution!r}, pulse({motion.amplitude / block.gravity!r},"
+        f" {motion.omega / block.p!r}, {motion.half_cycles}), {float(times[-1]) * block.p!r},"
+        f" {(times * block.p).tolist()})"
+    )
+    engine = pytest.importorskip(ENGINE).Context()
+    engine.eval(SCRIPT)
+    found = json.loads(engine.eval(f"JSON.stringify({call})"))
+    return found | {"peak": math.inf if found["peak"] is None else found["peak"]}
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case[:5])))
+def test_the_page_solves_the_exact_equations(case):
+    width, height, amplitude_g, omega, half_cycles, outcome = case
+    block = RigidBlock(width=width, height=height)
+    motion = SinePulse(amplitude=amplitude_g * block.gravity, omega=omega, half_cycles=half_cycles)
+    times = np.linspace(0.0, free_rocking_window(block, motion), 301)
+    right = simulate(block, motion, duration=float(times[-1]), times=times)
+    assert right.outcome.value == outcome
+    found = by_the_page(block, motion, times)
+    assert found["outcome"] == outcome
+    assert found["peak"] / block.alpha == pytest.approx(right.peak_ratio, abs=TOLERANCE)
+    if outcome != "overturned":
+        assert found["impacts"] == len(right.impacts)
+    shown = np.array(found["samples"])
+    assert len(shown) == len(right.history.theta)
+    assert shown / block.alpha == pytest.approx(right.history.theta / block.alpha, abs=TOLERANCE)
+
+
+@pytest.mark.parametrize("source", ["exact", "mujoco:default"])
+def test_the_commands_of_the_page_ask_what_it_shows(source, capsys, tmp_path):
+    engine = pytest.importorskip(ENGINE).Context()
+    write = str(source != "exact").lower()
+    engine.eval(SCRIPT)
+    values = f"0.5, 3, 2, 0.4, 6.2832, '{source}', {write}"
+    compare, *export = json.loads(engine.eval(f"JSON.stringify(commands({values}))"))
+    assert run([*compare.split()[1:], "--json", "--jobs", "1"]) == 0
+    found = json.loads(capsys.readouterr().out.splitlines()[-1])
+    peak = respond(source, BLOCK, PULSE).peak_ratio
+    assert (found["source"], found["peak_ratio"]) == (source, pytest.approx(peak, rel=1e-9))
+    for line in export:
+        assert run(line.replace("DIR", str(tmp_path)).split()[1:]) == 0
+        assert f"{peak:.12g}" in capsys.readouterr().out

@@ -14,6 +14,7 @@ from studies import scenes
 from studies.cases.drawn import calm_frames, slides
 from studies.kit.jobs import unanswered
 from studies.kit.run import run
+from studies.kit.tables import split
 from studies.scenes import finding, jobs, measure, tabulate
 
 FRAME_ROW = {
@@ -25,12 +26,12 @@ FRAME_ROW = {
 SLIDE_ROW = {
     **{"scene": "slide", "source": "pymunk:tuned", "case": "sine", "reason": "", "wall_s": 1e-3},
     **{"outcome": "slid", "slips": 2, "exact_slips": 2, "slip_error_m": 2e-3, "lift_m": 0.0},
-    "verdict": "right",
+    **{"verdict": "right", "slip_error": 1e-3},
 }
 
 
 def of(rows, name):
-    return tabulate(pd.DataFrame(rows))[name].to_dict("records")
+    return tabulate(split(rows, "scene"))[name].to_dict("records")
 
 
 def test_a_source_has_one_line_of_its_frames():
@@ -115,7 +116,7 @@ def test_equal_steps_are_shifted_by_parts_of_a_step():
 
 def test_rows_are_measured_and_a_process_that_ended_is_a_row():
     found = jobs(["exact", "pymunk:default"], True)
-    tables = tabulate(pd.DataFrame(run(found, measure)))
+    tables = tabulate(split(run(found, measure), "scene"))
     frame = tables["frame-summary"].set_index("source")
     assert frame.loc["exact", "max_error"] == 0.0 < frame.loc["pymunk:default", "max_error"]
     slide = tables["slide-summary"].set_index("source")

@@ -15,7 +15,7 @@ from studies import respond, score
 from studies.__main__ import run
 from studies.kit.run import run as measured
 from studies.kit.store import write_record
-from studies.kit.tables import write_table
+from studies.kit.tables import split, write_table
 from studies.measures.world import OFF, check, checked
 from studies.score import CASE, EXTREMES, MODEL, STEPS, STUDY, SWEEP, since, uses_of
 from studies.sources.registry import announce, resolve
@@ -50,14 +50,14 @@ def test_quick_asks_a_part_of_every_preset():
     quick = score.jobs(["moreau"], True)
     counts = Counter(job.labels["part"] for job in quick)
     assert counts[SWEEP] == 3 * len(range(0, 480, 11))
-    assert min(counts.values()) > 0 and len(counts) == 5
+    assert min(counts.values()) > 0 and len(counts) == 6
     assert {job.source.partition(":")[2] for job in quick} == {"default", "tuned", "landing"}
     assert {job.source for job in score.jobs(["moreau:tuned"], True)} == {"moreau:tuned"}
 
 
 def test_each_table_has_its_rows_with_its_own_columns(few):
     asked = [job for job in few(["mujoco:landing"], True) if job.labels["part"] != EXTREMES]
-    tables = STUDY.tabulate(pd.DataFrame(measured(asked, score.measure)))
+    tables = STUDY.tabulate(split(measured(asked, score.measure), "part"))
     assert {name: len(table) for name, table in tables.items() if len(table)} == {
         "score-model": 13, "score-sweep": 2, "score-steps": 2, "score-frame": 1
     }  # fmt: skip

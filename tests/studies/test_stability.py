@@ -15,7 +15,7 @@ from studies.cases.extreme import QUICK, SPRINGS, Extreme, extremes
 from studies.kit.run import lost_row, run
 from studies.kit.study import Study
 from studies.measures.history import energy, growth
-from studies.measures.verdicts import Verdict, judge
+from studies.stability import Verdict, judge
 
 CASE = Extreme(name="plain", group="test")
 EXACT = simulate(CASE.block, CASE.motion)

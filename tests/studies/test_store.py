@@ -99,7 +99,7 @@ def test_an_engine_depends_on_its_own_files_and_a_model_on_none():
 
 def test_a_measure_of_a_study_depends_on_the_files_that_it_imports():
     files = {path.relative_to(ROOT).as_posix() for path in identity.files_of("studies.sweep")}
-    assert {"studies/sweep.py", "studies/cases/paper.py", "studies/measures/claims.py"} <= files
+    assert {"studies/sweep.py", "studies/cases/paper.py", "studies/measures/wrongness.py"} <= files
     assert not [path for path in files if path.startswith(("studies/kit", "studies/drawing"))]
     assert (
         maker_of(resolve("exact"), sweep.jobs)["studies"]

@@ -1,1 +1,0 @@
-"""One block, one motion of its base, every source side by side."""
