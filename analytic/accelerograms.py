@@ -127,10 +127,8 @@ def _split(lines: Lines) -> tuple[Lines, Lines, tuple[float, float | None] | Non
     for i, (at, line) in enumerate(lines[:100], start=1):
         if asc and ":" not in line:
             break
-        found = [one.groupdict() for form in FORMS for one in form.finditer(line)]
-        for name, word in (
-            pair for each in found for pair in each.items() if not REMARK.match(line)
-        ):
+        found = [one for form in FORMS for one in form.finditer(line) if not REMARK.match(line)]
+        for name, word in (pair for one in found for pair in one.groupdict().items()):
             said[name][_whole(at, word) if name == "count" else _number(at, word)] = None
             end = i
         end = i if asc or BEGIN.match(line) else end
@@ -146,7 +144,7 @@ def _split(lines: Lines) -> tuple[Lines, Lines, tuple[float, float | None] | Non
             raise ValueError(f"its header says {number} as {name}; it must say one, dt in seconds")
     header = [line for line in lines[:end] if not asc or line[1].startswith(("DATA_", "UNITS:"))]
     if asc and not any(ASC.match(line.strip()) for _, line in header):
-        kind = shown(", ".join(line for _, line in header))
+        kind = ", ".join(line for _, line in header)[:99]
         raise ValueError(f"it says {kind}; it must say DATA_TYPE: ACCELERATION")
     below = lines[end : -1 if closed else None]
     return header, below, (min(said["dt"]), next(iter(said["count"]), None))
@@ -165,10 +163,8 @@ def _table(header: Lines, rows: Rows, separator: str | None, units: str | None) 
         raise ValueError('it has one column; dt, or a line "npts dt" above, must say a step')
     if len(rows) < 2:
         raise ValueError(f"it has {len(rows)} rows of numbers; it must have two or more")
-    for at, words in rows:
-        if len(words) != 2:
-            problem = f"line {at} has {len(words)} columns; it must have two"
-            raise ValueError(f"{problem}, time and acceleration")
+    for at, width in ((at, len(words)) for at, words in rows if len(words) != 2):
+        raise ValueError(f"line {at} has {width} columns; it must have two, time and acceleration")
     numbers = [[_number(at, word.strip()) for word in words] for at, words in rows]
     (times, samples), lines = np.transpose(numbers), [at for at, _ in rows]
     if not _named(header, separator):
