@@ -20,6 +20,8 @@ from analytic.kernels.taylor import expand_forcing, expand_weight
 NOTHING_YET = (1.0, 0.0, 1.0, 0.0)
 """Limits before the first state, of a block at rest on a base at rest."""
 
+SLOWEST = 1e-9
+"""Frequency [p] below which a segment is one series, however long."""
 MOST_REFINEMENTS = 30
 REFINED = 1e-14
 """Part of the friction ratio below which a better one changes nothing."""
@@ -64,14 +66,14 @@ def watch_rest(
     elif len(limits) > 0:
         for i in range(j, len(segments)):
             t, last = max(begin, segments[i][0]), min(end, segments[i][1])
-            while t < last:
-                h = 1.0 / max(segments[i][3], segments[i][10], 1.0 / (last - t))
+            while t <= last:
+                h = min(last - t, 1.0 / max(segments[i][3], segments[i][10], SLOWEST))
                 expand_forcing(segments[i], t, 1.0, ORDER, work[0])
                 expand_weight(segments[i], t, ORDER, work[1])
                 stretch(work[0], ORDER, h, work[6])
                 stretch(work[1], ORDER, h, work[5])
                 watch_ratio(limits, ORDER, 1.0, work)
-                t = t + h if t + h > t else last
+                t = t + h if h > 0.0 else math.inf
 
 
 def watch_train(

@@ -161,11 +161,14 @@ def test_limits_and_mirror():
     plain = simulate(EVEN, PULSE)
     for none in (Still(), SinePulse(amplitude=0.0, omega=1.0), Record(dt=9.0, samples=[0.0, 0.0])):
         assert replace(simulate(EVEN, PULSE, vertical=none), wall_s=plain.wall_s) == plain
-    constant = Record(dt=1.0, samples=[3.0] * 9)
-    more = simulate(EVEN, PULSE, vertical=constant)
-    other = simulate(RigidBlock(width=0.5, height=1.5, gravity=12.81), PULSE)
-    assert (more.outcome, other.uplifts) == (other.outcome, pytest.approx(more.uplifts, rel=1e-12))
-    assert more.friction_needed == pytest.approx(other.friction_needed, rel=1e-9)
+    for up, phase in ((3.0, 0.0), (-3.0, 1.0)):  # of the latter the ground lifts it at once
+        pulse, constant = replace(PULSE, phase=phase), Record(dt=1.0, samples=[up] * 9)
+        more = simulate(EVEN, pulse, vertical=constant)
+        other = simulate(replace(EVEN, gravity=9.81 + up), pulse)
+        for name in ("peak_ratio", "friction_needed", "uplifts"):
+            assert getattr(more, name) == pytest.approx(getattr(other, name), rel=1e-9), name
+    assert more.uplifts == (0.0,)
+    assert more.min_normal == pytest.approx(other.min_normal * 6.81 / 9.81, rel=1e-9)
     one = simulate(EVEN, PULSE, vertical=UPWARD)
     mirror = simulate(EVEN, replace(PULSE, amplitude=-PULSE.amplitude), vertical=UPWARD)
     assert one.peak_sides == mirror.peak_sides[::-1] != plain.peak_sides
