@@ -230,12 +230,12 @@ class BothWays:
     upward: Motion
 
     def __post_init__(self) -> None:
-        for name, motion in (("horizontal", self.level), ("vertical", self.upward)):
+        for name, motion in (("half_cycles", self.level), ("vertical_half_cycles", self.upward)):
             rows = motion.segments()
             turns = float(np.sum(rows[:, 3] * (rows[:, 1] - rows[:, 0]))) / math.pi
             if turns > MOST_TURNS:
-                words = f"it must have at most {MOST_TURNS:g} where the base moves both ways"
-                raise ValueError(f"{name} motion has {turns:g} half cycles; {words}")
+                words = f"it must be at most {MOST_TURNS:g} where the base moves both ways"
+                raise ValueError(f"{name} is {turns:g}; {words}")
 
     @property
     def duration(self) -> float:

@@ -39,6 +39,7 @@ USUAL = {
     SinePulse: {"amplitude": 4.0, "omega": 6.0, "half_cycles": 1},
     Record: {"dt": 0.1, "samples": [1.0, 2.0]},
     Delayed: {"motion": HALF_SINE, "rest_s": 1.0},
+    BothWays: {"upward": HALF_SINE},
     Record.read: {"path": "nowhere.txt"},
     simulate: SHAKEN,
     integrate: SHAKEN,
@@ -122,6 +123,11 @@ TOGETHER = [
     *(
         (simulate, {"vertical": HALF_SINE, **each}, "only the exact model of a Rig")
         for each in NEVER
+    ),
+    (
+        BothWays,
+        {"level": SinePulse(amplitude=1.0, omega=1.0, half_cycles=10**7)},
+        "cycles is 1e+07",
     ),
     (integrate, {"motion": BothWays(HALF_SINE, HALF_SINE)}, "vertical is given; only the exact"),
     (simulate, {"block": BOX, "model": "housner"}, "a SlidingBlock has only 'exact'"),
