@@ -7,18 +7,10 @@ from functools import partial
 import pytest
 from given import BLOCK, G
 
-from analytic import (
-    BothWays,
-    Delayed,
-    Record,
-    RigidBlock,
-    RockingFrame,
-    SinePulse,
-    SlidingBlock,
-    Still,
-)
+from analytic import Delayed, Record, RigidBlock, RockingFrame, SinePulse, SlidingBlock, Still
 from analytic.cases import peak_ratios
 from analytic.maps import overturning_modes
+from analytic.motion import BothWays
 from analytic.simulate import simulate
 from analytic.steppers import integrate
 from engines import Scene
@@ -49,6 +41,8 @@ USUAL = {
 """What can be asked, and with what it is answered."""
 
 NEVER = ({"model": "housner"}, {"block": BOX}, {"block": RockingFrame(**SIZE, load=1.0)})
+DROP = SinePulse.in_g(1.1, omega=9.0, half_cycles=2)
+LONG = SinePulse(amplitude=1.0, omega=1.0, half_cycles=10**7)
 NO_SIZE = (0, -1, INF, NAN, "wide", None)
 WRONG = {
     RigidBlock: {
@@ -115,20 +109,9 @@ TOGETHER = [
     (Record.read, {"units": "feet"}, "units must be among g, mg, m/s2"),
     (simulate, {"times": [1.0, 0.5]}, "increasing"),
     *((ask, {**RELEASED, "times": [-0.5, 0.5]}, "times begin at -0.5") for ask in ROUTES),
-    (
-        simulate,
-        {"vertical": SinePulse.in_g(1.1, omega=9.0, half_cycles=2)},
-        "falls to -10.791 m/s2",
-    ),
-    *(
-        (simulate, {"vertical": HALF_SINE, **each}, "only the exact model of a Rig")
-        for each in NEVER
-    ),
-    (
-        BothWays,
-        {"level": SinePulse(amplitude=1.0, omega=1.0, half_cycles=10**7)},
-        "cycles is 1e+07",
-    ),
+    (simulate, {"vertical": DROP}, "falls to -10.791 m/s2"),
+    *((simulate, {"vertical": HALF_SINE, **it}, "only the exact model of a R") for it in NEVER),
+    (BothWays, {"level": LONG}, "half_cycles is 1e+07"),
     (integrate, {"motion": BothWays(HALF_SINE, HALF_SINE)}, "vertical is given; only the exact"),
     (simulate, {"block": BOX, "model": "housner"}, "a SlidingBlock has only 'exact'"),
     (simulate, {"block": BOX, "start": 3}, "start is 3; it must be x"),

@@ -71,12 +71,6 @@ def test_a_baseline_is_corrected_by_a_named_method(baseline, tmp_path, capsys):
     assert message.startswith(f"baseline corrected by detrend, {baseline}")
 
 
-def test_nothing_but_a_trend_is_refused(written, capsys):
-    path = written("# units: g\n0 0.3\n0.1 0.3\n0.2 0.3\n")
-    asked = ["compare", *ASKED, path, "--baseline", "constant", "--pga", "1"]
-    refused(capsys, asked, "--record is", "the record is its own constant trend")
-
-
 @pytest.fixture
 def written(tmp_path):
     """Return what writes a text into a file, its line ends as they are."""
@@ -164,15 +158,17 @@ def test_tables_that_leave_no_doubt_and_samples_alone_with_their_step(text, writ
     assert record.samples.tolist() == [9.81, 19.62, 39.24]
 
 
-@pytest.mark.parametrize("text", [AT2["series"], "3 0.01\n1\n2\n3\n", "0 1\n0.1 2\n0.2 2\n"])
-def test_a_step_that_the_file_states_otherwise_is_refused(text, written, capsys):
-    asked = ["compare", *ASKED, written(text), "--units", "g", "--record-dt", "0.02"]
-    refused(capsys, asked, "--record is", "--record-dt must not be 0.02")
+STEP = "--units g --record-dt 0.02", "--record-dt must not be 0.02"
+CONTRARY = [
+    ("# units: g\n0 0.3\n0.1 0.3\n0.2 0.3\n", "--baseline constant --pga 1", "own constant trend"),
+    ("0 1 5\n0.1 2 5\n0.2 3 5\n", "--units g --record-dt 0.1", "has 3 columns"),
+    *((text, *STEP) for text in (AT2["series"], "3 0.01\n1\n2\n3\n", "0 1\n0.1 2\n0.2 2\n")),
+]
 
 
-def test_a_table_of_three_columns_is_no_column_of_samples(written):
-    with pytest.raises(BadInputError, match="has 3 columns"):
-        read_record(written("0 1 5\n0.1 2 5\n0.2 3 5\n"), "g", None, 0.1)
+@pytest.mark.parametrize(("text", "options", "words"), CONTRARY)
+def test_options_that_a_file_contradicts_are_refused(text, options, words, written, capsys):
+    refused(capsys, ["compare", *ASKED, written(text), *options.split()], "--record is", words)
 
 
 def test_times_printed_in_few_decimals_are_equal_steps(written):
@@ -220,7 +216,6 @@ GOOD = AT2["series"]
 ROWS = "0.0 0.1\n0.1 0.2\n0.2 -0.3\n"
 COMMAS = ROWS.replace(" ", ",")
 TWICE = AT2["said twice"]
-UNLIKE = "VELOCITY TIME SERIES IN UNITS OF CM/S"
 
 
 def table(*times, header="# units: g\n"):
@@ -238,7 +233,7 @@ def asc(old, new):
 
 # (what is the matter, text or bytes, --units, words of the refusal)
 DOUBTS = [
-    ("velocity", at2(UNLIKE), None, "line 3 speaks of velocity"),
+    ("velocity", at2("VELOCITY TIME SERIES IN UNITS OF CM/S"), None, "line 3 speaks of velocity"),
     ("displacement", at2("DISPLACEMENT TIME HISTORY IN UNITS OF CM"), "g", "displacement"),
     ("units of velocity", at2("ACCELERATION TIME SERIES IN UNITS OF CM/S"), "g", "'cm/s'"),
     ("a column of velocity", f"t (s), v (m/s)\n{COMMAS}", "g", "'v (m/s)'"),

@@ -89,7 +89,6 @@ compare BLOCK --record /dev/null | --record is | a file that can be read (it is 
 compare BLOCK --record . | --record is | a file that can be read (it is a folder)
 compare BLOCK --record PIPE | --record is | a file that can be read (it is a named pipe)
 compare CASE --baseline none | only with --record
-compare CASE --vertical PIPE | --vertical is | a file that can be read (it is a named pipe)
 compare CASE --vertical-omega 9 | --vertical-amplitude missing | requires both
 compare CASE --vertical X.AT2 --vertical-omega 9 | --vertical-omega is 9; it may be given only
 compare CASE --vertical X.AT2 --sources exact rk4 | rk4 takes no vertical motion; only exact does
