@@ -17,8 +17,7 @@ from studies.contact import variants
 
 CASE = chosen_cases(True)["typical"][3]
 VARIANTS = [variant for engine in installed_engines() for variant in variants(engine)]
-LEFT = (Reason.SANK, Reason.THROWN, Reason.SLID)
-"""Why the response is no longer that of a rocking block."""
+LEFT = (Reason.SANK, Reason.THROWN, Reason.SLID)  # no longer a rocking block
 MUJOCO_TUNED = functools.partial(replace, TUNED)
 
 
@@ -90,7 +89,7 @@ def test_stiffness_reads_back_where_the_library_tells(monkeypatch):
     library = pytest.importorskip("pybullet")
     change = library.changeDynamics
 
-    def forgetful(contactStiffness=0.0, contactDamping=0.0, **named):  # noqa: N803
+    def forgetful(contactStiffness=0.0, contactDamping=0.0, **named):
         return change(**named)
 
     monkeypatch.setattr(library, "changeDynamics", forgetful)
