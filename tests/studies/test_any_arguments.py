@@ -17,7 +17,7 @@ from studies.kit import run as runs
 from studies.kit.app import make_app, settle_environment
 from studies.kit.store import FolderError
 from studies.kit.workers import Lost
-from studies.page import chapters
+from studies.page import page
 
 pytestmark = pytest.mark.processes
 
@@ -79,7 +79,7 @@ def place(tmp_path_factory):
         patch.setattr("studies.blocks.Store", refuse, raising=False)
         patch.setattr("studies.score.Store", refuse, raising=False)
         patch.setattr(runs, "answers", give_up)
-        patch.setattr(chapters, "_prepare", refuse)
+        patch.setattr(page, "_prepare", refuse)
         patch.setattr("studies.drawing.film.write_film", lambda *_: None)
         patch.setattr("studies.kit.run.CONNECT_S", 0.5)
         yield folder

@@ -21,7 +21,7 @@ from engines.scene import free_rocking_window
 from studies import respond
 from studies.__main__ import run
 from studies.measures.published import PUBLISHED
-from studies.page import chapters, page
+from studies.page import page
 from studies.page.chapters import PARTS
 from studies.page.page import AXES, engine_cases
 
@@ -41,11 +41,10 @@ def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     parts = tuple(replace(SMALL_OF[f], quick=words) for f, words in SMALL.items())
     with pytest.MonkeyPatch.context() as patch:
-        for module in (page, chapters):
-            patch.setattr(module, "PARTS", parts)
+        patch.setattr(page, "PARTS", parts)
         patch.setattr(page, "CHAPTERS", {"A chapter": parts})
         patch.setattr(page, "SHOWN", FEW)
-        assert chapters.command(out=folder) == 0
+        assert page.command(out=folder) == 0
     return folder
 
 
@@ -111,8 +110,8 @@ def test_the_engines_answers_are_those_of_the_tables():
 
 
 def test_a_report_is_resumed_and_not_mixed(made, monkeypatch):
-    with pytest.raises(chapters.FolderError, match="quick report"):
-        chapters.command(out=made, full=True)
+    with pytest.raises(page.FolderError, match="quick report"):
+        page.command(out=made, full=True)
 
 
 AMPLITUDE = 0.43333333 * GRAVITY
