@@ -229,11 +229,7 @@ def compare(
     place: Place = here,
     estimate: bool = False,
 ) -> list[Row]:
-    """Ask every source, and the exact solution besides; return a row for each.
-
-    `error` is relative, nan unless both rock; `velocity_ratio` is the median of all impacts, and
-    `impact_error` the largest of the first ones, in units of 1/p.
-    """
+    """Ask every source, and the exact solution besides; return a row for each."""
     own = yours.options(sources, case.system)
     jobs = [
         Job(labels={}, case=case, source=name, options=effort.options(name) | own.get(name, {}))
