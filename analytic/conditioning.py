@@ -122,7 +122,8 @@ def scaled(
     def solve(stronger: float, livelier: float) -> tuple[float, Outcome]:
         if broken:
             return math.nan, Outcome.FAILED
-        harder = moving * np.array([1.0, 1.0, stronger, 1.0, 1.0, stronger, stronger])
+        harder = moving.copy()
+        harder[:, [2, 5, 6]] *= stronger
         right, left = (
             law._replace(eta=min(livelier * law.eta, max(law.eta, 1.0))) for law in posed.laws
         )

@@ -74,11 +74,8 @@ def overturning_modes(
         k, saddle, *_ = constants
         # as `closed_form.work_to`, and the separatrix v = k (c - y) or v = 2 sin((alpha - y)/2)
         if linear:
-            work, excess, barrier = (
-                0.5 * k * k * y * (2.0 * saddle - y),
-                k * (y - saddle),
-                k * saddle,
-            )
+            work = 0.5 * k * k * y * (2.0 * saddle - y)
+            excess, barrier = k * (y - saddle), k * saddle
         else:
             work = 2.0 * np.sin(alpha - 0.5 * y) * np.sin(0.5 * y)
             excess, barrier = 2.0 * np.sin(0.5 * (y - alpha)), 2.0 * np.sin(0.5 * alpha)

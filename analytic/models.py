@@ -24,28 +24,21 @@ from analytic.frame import Rocker
 from analytic.kernels.law import FloatArray, Law, Laws
 
 
-def _one(alpha: FloatArray) -> FloatArray:
-    return np.ones_like(alpha)
-
-
-def _same(alpha: FloatArray) -> FloatArray:
-    return alpha
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Model:
     """A model of rocking: functions of the slenderness alpha [rad].
 
-    Beyond the saddle c [rad] the free block overturns; the frequency k is in units of p, forcing is
-    q. Unless it is linear the restoring moment is the exact one. The title is for figures.
+    Beyond the saddle c [rad], by default alpha, the free block overturns; the frequency k is in
+    units of p, forcing is q. Unless it is linear the restoring moment is the exact one. The title
+    is for figures.
     """
 
     name: str
     title: str
     linear: bool
-    saddle: Callable[[FloatArray], FloatArray]
-    frequency: Callable[[FloatArray], FloatArray] = _one
-    forcing: Callable[[FloatArray], FloatArray] = _one
+    saddle: Callable[[FloatArray], FloatArray] = np.asarray
+    frequency: Callable[[FloatArray], FloatArray] = np.ones_like
+    forcing: Callable[[FloatArray], FloatArray] = np.ones_like
 
     def onset(self, alpha: FloatArray) -> FloatArray:
         """Ground acceleration [g] above which a resting block lifts off."""
@@ -72,8 +65,8 @@ class Model:
         return Law(self.linear, faster * k, saddle, factor, alpha, onset, eta)
 
 
-EXACT = Model(name="exact", title="Exact", linear=False, saddle=_same)
-HOUSNER = Model(name="housner", title="Housner linearization", linear=True, saddle=_same)
+EXACT = Model(name="exact", title="Exact", linear=False)
+HOUSNER = Model(name="housner", title="Housner linearization", linear=True)
 MODIFIED = Model(
     name="modified",
     title="Modified linearization",
@@ -85,7 +78,6 @@ ONSET_MATCHED = Model(
     name="onset-matched",
     title="Housner, onset matched",
     linear=True,
-    saddle=_same,
     forcing=lambda alpha: alpha / np.tan(alpha),
 )
 

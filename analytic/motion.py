@@ -24,6 +24,10 @@ SEGMENT_COLUMNS = ("start", "end", "amplitude", "omega", "phase", "offset", "slo
 amplitude sin(omega (t - start) + phase) + offset + slope (t - start). A row is a sine or a straight
 line: uplifts are found for either, not for their sum."""
 
+MOST_TURNS = 1e6
+"""Half cycles of each motion of a base that moves both ways: uplifts are sought step by step."""
+SAME_KNOT = 1e-12
+"""Part of the duration within which ends of segments of both motions are one."""
 MOST_PHASE = 1e6
 """Phase of a pulse [rad] up to which floating point holds ten digits of its angle."""
 
@@ -213,3 +217,78 @@ class Delayed:
         rest = np.zeros((1, len(SEGMENT_COLUMNS)))
         rest[0, 1] = self.rest_s
         return np.concatenate([rest, rows])
+
+
+@dataclass(frozen=True, slots=True)
+class BothWays:
+    """A motion of the base with another one upwards; all but `segments` is of the horizontal one.
+
+    Each has its own end; the duration is the longer one.
+    """
+
+    level: Motion
+    upward: Motion
+
+    def __post_init__(self) -> None:
+        for name, motion in (("half_cycles", self.level), ("vertical_half_cycles", self.upward)):
+            rows = motion.segments()
+            turns = float(np.sum(rows[:, 3] * (rows[:, 1] - rows[:, 0]))) / math.pi
+            if turns > MOST_TURNS:
+                words = f"it must be at most {MOST_TURNS:g} where the base moves both ways"
+                raise ValueError(f"{name} is {turns:g}; {words}")
+
+    @property
+    def duration(self) -> float:
+        """Time [s] at which both accelerations have ended."""
+        return max(self.level.duration, self.upward.duration)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Those of both [s]."""
+        return tuple(sorted({*self.level.breakpoints, *self.upward.breakpoints}))
+
+    @property
+    def lowest(self) -> float:
+        """Smallest acceleration upwards [m/s2]."""
+        times = [np.array([*self.upward.breakpoints])]
+        for start, end, amplitude, omega, phase, *_ in self.upward.segments().tolist():
+            if amplitude != 0.0:
+                trough = -math.copysign(0.5 * math.pi, amplitude) - phase
+                first = trough + 2.0 * math.pi * math.ceil(-trough / (2.0 * math.pi))
+                times.append(np.array([min(start + first / omega, end)]))
+        return float(np.min(self.upward.acceleration(np.concatenate(times))))
+
+    def acceleration(self, t: ArrayLike) -> FloatArray:
+        """Ground acceleration [m/s2] at the times `t` [s]."""
+        return self.level.acceleration(t)
+
+    def velocity(self, t: ArrayLike) -> FloatArray:
+        """Ground velocity [m/s] at the times `t` [s]."""
+        return self.level.velocity(t)
+
+    def displacement(self, t: ArrayLike) -> FloatArray:
+        """Ground displacement [m] at the times `t` [s]."""
+        return self.level.displacement(t)
+
+    def segments(self) -> FloatArray:
+        """Rows of `SEGMENT_COLUMNS` twice, the second ones upwards, between the knots of both."""
+        both = [motion.segments() for motion in (self.level, self.upward)]
+        knots = np.unique(np.concatenate([rows[:, :2].ravel() for rows in both]))
+        begins = knots[:-1][np.diff(knots) > SAME_KNOT * knots[-1]]
+        ends = np.append(begins[1:], knots[-1])
+        parts = []
+        for rows in both:
+            middle = 0.5 * (begins + ends)
+            at = np.maximum(np.searchsorted(rows[:, 0], middle, side="right") - 1, 0)
+            part = np.where((middle < rows[at, 1])[:, None], rows[at], 0.0)
+            gone = begins - part[:, 0]
+            part[:, 4] += part[:, 3] * gone
+            part[:, 5] += part[:, 6] * gone
+            part[:, 0], part[:, 1] = begins, ends
+            parts.append(part)
+        return np.hstack(parts)
+
+
+def both_ways(level: Motion, upward: Motion) -> Motion:
+    """Return two motions as one; the horizontal one alone where the other does not move."""
+    return BothWays(level, upward) if np.any(upward.segments()[:, [2, 5, 6]]) else level

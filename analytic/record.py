@@ -98,8 +98,8 @@ class Record:
             else in it leaves a doubt.
         """
         try:
-            found = read(Path(path), units, dt, insist)
-            return cls(dt=found.dt, samples=found.samples)
+            step, _, samples = read(Path(path), units, dt, insist)
+            return cls(dt=step, samples=samples)
         except ValueError as problem:
             raise ValueError(f"path is {str(path)!r}; {problem}") from problem
 

@@ -15,11 +15,11 @@ from analytic.kernels.forces import NOTHING_YET
 from analytic.kernels.law import IMPACT, RESTED, UPLIFT, Notes
 from analytic.kernels.taylor import TOLERANCE, accuracy
 from analytic.models import Model, find_model
-from analytic.motion import Motion
+from analytic.motion import Motion, both_ways
 from analytic.response import History, Impact, Outcome, Problem, Reason, Response
 from analytic.slide import SlidingBlock
 from analytic.slipping import slid
-from analytic.start import REST, Posed, check_window, pose
+from analytic.start import REST, Posed, check_vertical, check_window, pose
 
 OUTCOMES = (Outcome.AT_REST, Outcome.ROCKED, Outcome.OVERTURNED, Outcome.FAILED, Outcome.FAILED)
 """In the order of the codes in `analytic.kernels.excursions`."""
@@ -42,6 +42,7 @@ def simulate(
     model: str | Model = "exact",
     start: tuple[float, float] = REST,
     *,
+    vertical: Motion | None = None,
     duration: float | None = None,
     times: ArrayLike | None = None,
     tolerance: float = TOLERANCE,
@@ -59,6 +60,9 @@ def simulate(
         The sign of theta says which corner carries the block, that of the rate where theta is 0.
         Beyond the critical rotation the motion may bring a block back. Of a sliding block, place
         [m] and rate [m/s] relative to the base.
+    vertical : Motion, optional
+        Motion of the base upwards at the same time, for the exact model of a `RigidBlock`; its
+        acceleration must stay above -g. It may end before or after the other.
     duration : float, optional
         Follow the response until this time [s], at least the duration of the motion. Without it
         the response is followed to the end of the motion, or to the last of the times where that is
@@ -98,7 +102,9 @@ def simulate(
     >>> simulate(block, Still(), start=(0.5 * block.alpha, 0.0), duration=5.0).outcome
     <Outcome.ROCKED: 'rocked'>
     """
+    motion = motion if vertical is None else both_ways(motion, vertical)
     if isinstance(block, SlidingBlock):
+        check_vertical(block, motion)
         if find_model(model).linear:
             raise ValueError(f"model is {model!r}; a {type(block).__name__} has only 'exact'")
         until, sampled = check_window(motion, duration, times)

@@ -10,6 +10,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -205,20 +206,12 @@ def _slips(
     legs: list[Leg], end: float
 ) -> tuple[tuple[float, ...], tuple[tuple[float, float], ...]]:
     """Return the slips [m] and their times of begin and end [s] from the legs of a response."""
-    slips: list[float] = []
-    times: list[tuple[float, float]] = []
-    begin: Leg | None = None
-    for leg in legs:
-        if begin is not None and leg.side != begin.side:
-            slips.append(leg.x - begin.x)
-            times.append((begin.begin, leg.begin))
-            begin = None
-        if begin is None and leg.side != 0.0:
-            begin = leg
-    if begin is not None:
-        slips.append(legs[-1].place(end - legs[-1].begin) - begin.x)
-        times.append((begin.begin, end))
-    return tuple(slips), tuple(times)
+    runs = [(side, next(run)) for side, run in groupby(legs, key=lambda leg: leg.side)]
+    stops = [(leg.x, leg.begin) for _, leg in runs[1:]]
+    if runs and runs[-1][0] != 0.0:
+        stops.append((legs[-1].place(end - legs[-1].begin), end))
+    slips = [(leg, *stop) for (side, leg), stop in zip(runs, stops, strict=False) if side != 0.0]
+    return tuple(x - leg.x for leg, x, _ in slips), tuple((leg.begin, t) for leg, _, t in slips)
 
 
 def _history(legs: list[Leg], sampled: FloatArray) -> History:

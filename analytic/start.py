@@ -6,12 +6,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from analytic.block import RigidBlock
 from analytic.checks import check_tilt, finite, start_of
 from analytic.frame import Rocker
 from analytic.kernels.law import FloatArray, Laws, Start, law_of
 from analytic.kernels.rest import strongest_between
 from analytic.models import Model, find_model
-from analytic.motion import Motion
+from analytic.motion import BothWays, Motion
 
 LEAST_TILT = 1e-30
 """Tilt over alpha, below which the time to the first impact is lost in a step of the solution."""
@@ -46,7 +47,9 @@ class Posed(NamedTuple):
 
     def then_still(self, end: float) -> FloatArray:
         """Return the motion with one segment more, on which nothing moves until a time [1/p]."""
-        return np.vstack([self.segments, [self.segments[-1, 1], end, 0.0, 0.0, 0.0, 0.0, 0.0]])
+        still = np.zeros(self.segments.shape[1])
+        still[:2] = self.segments[-1, 1], end
+        return np.vstack([self.segments, still])
 
 
 def pose(
@@ -59,12 +62,26 @@ def pose(
 ) -> Posed:
     """Return a response to be solved; the arguments, and their errors, are those of `simulate`."""
     laws = find_model(model).laws(block)
+    check_vertical(block, motion, laws[0].linear)
     until, sampled = check_window(motion, duration, times)
     begin = folded(block, laws, motion, start, sampled)
     p, g = np.float64(block.p), np.float64(block.gravity)
     with np.errstate(all="ignore"):
         units = np.array([p, p, 1.0 / g, 1.0 / p, 1.0, 1.0 / g, 1.0 / (g * p)])
-        return Posed(laws, begin, motion.segments() * units, until * block.p, sampled)
+        segments = motion.segments()
+        scaled = segments * np.resize(units, segments.shape[1])
+        return Posed(laws, begin, scaled, until * block.p, sampled)
+
+
+def check_vertical(block: object, motion: Motion, linear: bool = True) -> None:
+    """Refuse a vertical motion, but of an exact block that it presses on its base all the time."""
+    if not isinstance(motion, BothWays):
+        return
+    if linear or not isinstance(block, RigidBlock):
+        raise ValueError("vertical is given; only the exact model of a RigidBlock takes it")
+    if not motion.lowest > -block.gravity:
+        allowed = f"above -{block.gravity:g}, the block's gravity, or it lifts off its base"
+        raise ValueError(f"vertical falls to {motion.lowest:g} m/s2; it must stay {allowed}")
 
 
 def strongest(motion: Motion) -> float:

@@ -51,7 +51,7 @@ from analytic.models import Model
 from analytic.motion import Motion
 from analytic.response import Response
 from analytic.simulate import as_response
-from analytic.start import REST, pose
+from analytic.start import REST, check_vertical, pose
 
 METHODS = ("rk4", "average-acceleration")
 STEP = 1e-3
@@ -114,6 +114,7 @@ def integrate(
     event_tolerance = positive("event_tolerance", event_tolerance)
     if isinstance(block, RigidBlock) and not block.is_even:
         raise ValueError(f"offset is {block.offset!r}; it must be 0 for a fixed step")
+    check_vertical(block, motion)
     posed = pose(block, motion, model, start, duration, times)
     solver = Solver(method == "rk4", step, event_tolerance)
     ended = float(posed.segments[-1, 1])

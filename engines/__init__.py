@@ -30,7 +30,8 @@ It holds
   declarations are read without it: a library that is missing is a row "not available";
 - where it can be, ``script``: the scene in the library's own words, by which `rocking export`
   writes it out and `rocking advise` says what to set. The world is built once more with a library
-  whose calls are noted (`engines.run.export`), so that a script says what a run does;
+  whose calls are noted (`engines.run.export`), so that a script says what a run does. Much of this
+  is alike for most libraries, and stands in `engines.parts.Adapter`;
 - where its library can be stepped from compiled code, ``drive``: to the bit what ``step`` and
   ``state`` give;
 - where it can hold several bodies, and bodies that rest on others, ``stacks``;

@@ -176,27 +176,16 @@ class Preset:
 
 def default(settings: Any, step_s: float, documented: tuple[Citation, ...], **own: float) -> Preset:
     """Return a library as its documentation shows it, and its own settings where others are."""
-    return Preset(
-        name="default",
-        settings=settings,
-        step_s=step_s,
-        documented=documented,
-        frame="world",
-        own=own,
-    )
+    said: dict[str, Any] = {"documented": documented, "own": own}
+    return Preset(name="default", settings=settings, step_s=step_s, frame="world", **said)
 
 
 def landing(
     settings: Any, helped_by: Mapping[Help, Mapping[str, Any]] | None = None, **options: Any
 ) -> Preset:
     """Return steps that land, and what helps besides; options are of `Preset`."""
-    return Preset(
-        name="landing",
-        settings=settings,
-        stepping=Stepping.LANDING,
-        helped_by={Help.STEPS: None, **(helped_by or {})},
-        **options,
-    )
+    options["helped_by"] = {Help.STEPS: None, **(helped_by or {})}
+    return Preset(name="landing", settings=settings, stepping=Stepping.LANDING, **options)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -97,12 +97,10 @@ class PhysxWorld(Adapter):
         s, unit, physx = self._s, self._unit, self._library.physx
         bounce = None if s.bounce_threshold is None else s.bounce_threshold * unit
         sleep = None if s.sleeping in (None, True) else 0.0
-        iterations = {
-            "solver_position_iterations": s.iterations,
-            "solver_velocity_iterations": s.velocity_iterations,
-        }
+        many = {"solver_position_iterations": s.iterations}
+        many["solver_velocity_iterations"] = s.velocity_iterations
         scene = given({"bounce_threshold": bounce, "enable_tgs": s.tgs})
-        body = given({**iterations, "sleep_threshold": sleep})
+        body = given({**many, "sleep_threshold": sleep})
         shape = given({"contact_offset": s.contact_offset})
         physx.set_scene_config(gravity=(0.0, 0.0, -self._weight * unit), **scene)
         physx.set_body_config(**body)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from analytic.block import RigidBlock, Upright
 from analytic.checks import check_tilt, finite, positive, start_of
 from analytic.frame import Rocker, RockingFrame
-from analytic.motion import SEGMENT_COLUMNS, Motion
+from analytic.motion import SEGMENT_COLUMNS, BothWays, Motion
 from analytic.slide import SlidingBlock
 from engines.settings import one_of
 
@@ -323,6 +323,8 @@ class Scene:
 
     def __post_init__(self) -> None:
         one_of("accuracy", self.accuracy, tuple(ACCURACIES))
+        if isinstance(self.motion, BothWays):
+            raise ValueError("vertical is given; an engine takes no vertical motion")
         if (count := getattr(self.motion, "half_cycles", 1)) > MOST_HALF_CYCLES:
             allowed = f"at most {MOST_HALF_CYCLES}, as an engine holds the times of all in memory"
             raise ValueError(f"half_cycles is {count!r}; it must be {allowed}")

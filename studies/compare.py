@@ -12,7 +12,7 @@ import pandas as pd
 
 from analytic import RigidBlock
 from analytic.frame import RockingFrame
-from analytic.motion import Motion, SinePulse, Still
+from analytic.motion import BothWays, Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
@@ -88,12 +88,16 @@ def command(
         arguments.check_file("--plot", plot, ".png", ".pdf", ".svg")
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
+    if isinstance(motion, BothWays) and sources == DEFAULT_SOURCES:
+        sources = ("exact",)
     window = window_of(system, motion, duration, p_dt=effort.p_dt, dt=yours.dt)
     times = np.linspace(0.0, window, 1501) if plot else None
     case = Question(system=system, motion=motion, start=start, duration=window, times=times)
     place = place_of(computing, at_once=True)
     rows = compare(case, sources, yours, effort, place=place, estimate=estimate)
-    note = baseline_note(motion, excitation.baseline) if isinstance(motion, Record) else ""
+    parts = (motion.level, motion.upward) if isinstance(motion, BothWays) else (motion,)
+    notes = [baseline_note(it, excitation.baseline) for it in parts if isinstance(it, Record)]
+    note = "; ".join(filter(None, notes))
     if json:
         for record in records(rows, note):
             finite = {
@@ -137,7 +141,7 @@ def table_text(case: Question, records: Sequence[Row], note: str = "") -> str:
     return "\n".join(
         [
             _standing(system),
-            f"ground  {_ground(case)}; observed for {case.duration:.4g} s",
+            *_ground(case),
             *[f"base    {note}"] * bool(note),
             *[f"start   {words}"] * (case.start != (0.0, 0.0)),
             *[f"exact   {', '.join(facts)}"] * (not isinstance(system, SlidingBlock)),
@@ -180,8 +184,15 @@ def _standing(system: System) -> str:
     return f"block   {sizes}: {numbers}"
 
 
-def _ground(case: Question) -> str:
-    motion, name = case.motion, motion_name(case.motion)
+def _ground(case: Question) -> list[str]:
+    motion, g = case.motion, case.system.gravity
+    level = motion.level if isinstance(motion, BothWays) else motion
+    upward = [f"upward  {_moving(motion.upward, g)}"] if isinstance(motion, BothWays) else []
+    return [f"ground  {_moving(level, g)}; observed for {case.duration:.4g} s", *upward]
+
+
+def _moving(motion: Motion, gravity: float) -> str:
+    name = motion_name(motion)
     if isinstance(motion, Still):
         return name
     if isinstance(motion, SinePulse):
@@ -192,7 +203,7 @@ def _ground(case: Question) -> str:
         speed = float(np.abs(motion.velocity(times)).max())
         step = motion.duration / (times.size - 1)
         details = f"{speed:.3g} m/s, {times.size} samples every {step:.4g} s"
-    peak = strongest(motion) / case.system.gravity
+    peak = strongest(motion) / gravity
     return f"{name}, {peak:.6g} g, {details}, {motion.duration:.4g} s"
 
 
@@ -218,11 +229,7 @@ def compare(
     place: Place = here,
     estimate: bool = False,
 ) -> list[Row]:
-    """Ask every source, and the exact solution besides; return a row for each.
-
-    `error` is relative, nan unless both rock; `velocity_ratio` is the median of all impacts, and
-    `impact_error` the largest of the first ones, in units of 1/p.
-    """
+    """Ask every source, and the exact solution besides; return a row for each."""
     own = yours.options(sources, case.system)
     jobs = [
         Job(labels={}, case=case, source=name, options=effort.options(name) | own.get(name, {}))

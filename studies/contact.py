@@ -83,19 +83,15 @@ def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variant:
-    """One way to set an engine: a preset, which factor differs from it, and how.
-
-    A preset as it is has no factor, and its title as level. `settings` and `scene` replace those
-    of the preset; `trap` says why it goes wrong without a word, where it does.
-    """
+    """One way to set an engine: a preset, which factor differs from it, and how."""
 
     engine: str
     preset: str
-    factor: str = ""
+    factor: str = ""  # none of a preset as it is, whose title is the level
     level: str
     settings: Mapping[str, Any] = field(default_factory=dict)
     scene: Mapping[str, Any] = field(default_factory=dict)
-    trap: str = ""
+    trap: str = ""  # why it goes wrong without a word, where it does
 
     @property
     def source(self) -> str:

@@ -44,16 +44,13 @@ STEPS = (0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """A source with one of its options left open; `values` go from cheap to dear, a step is p dt.
-
-    A model in closed form has none. `own` says whether it is among an engine's own settings.
-    """
+    """A source with one of its options left open, with values from cheap to dear."""
 
     source: str
     setting: str = ""
-    values: tuple[float, ...] = (0.0,)
+    values: tuple[float, ...] = (0.0,)  # a step is p dt
     options: Mapping[str, Any] = field(default_factory=dict)
-    own: bool = False
+    own: bool = False  # whether the option is among an engine's own settings
 
     def options_at(self, value: float) -> dict[str, Any]:
         """Return the options with the open one at a value."""

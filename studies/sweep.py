@@ -112,8 +112,8 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw figures 6 to 9 of a few sources; engines with several presets as an overview."""
+    from studies.drawing.figures import draw_sweep
     from studies.drawing.rows import draw_overview
-    from studies.drawing.sweep import draw_sweep
 
     compared = with_reference(tables["sweep"])
     lines = preset_table(over_all(tables["summary"]))

@@ -37,12 +37,21 @@ from analytic.kernels.polynomial import (
     trend,
     value,
 )
-from analytic.kernels.rest import acceleration, after_impact, ground, next_uplift, segment_at
+from analytic.kernels.rest import (
+    acceleration,
+    after_impact,
+    ground,
+    next_uplift,
+    safe_time,
+    segment_at,
+    weight,
+)
 from analytic.kernels.taylor import (
     Accuracy,
     expand_exact,
     expand_forcing,
     expand_linear,
+    expand_weight,
     trusted_step,
 )
 
@@ -109,11 +118,12 @@ def expand(
     y, f = work[0], work[1]
     y[0], y[1] = begin.y, begin.v
     expand_forcing(segment, begin.tau, begin.side, accuracy.order, f)
-    y[2] = 0.5 * acceleration(law, 1.0, f[0], y[0]) if begin.lead < 3 else 0.0
+    expand_weight(segment, begin.tau, accuracy.order, work[-1])
+    y[2] = 0.5 * acceleration(law, 1.0, f[0], y[0], work[-1][0]) if begin.lead < 3 else 0.0
     if law.linear:
         expand_linear(law, accuracy.order, f, y)
         return LINEAR_STEP / max(law.k, segment[3])
-    expand_exact(law, accuracy.order, work)
+    expand_exact(law, accuracy.order, work, len(segment) > 7)
     return trusted_step(y, accuracy)
 
 
@@ -144,12 +154,6 @@ def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
         if abs(move) <= 2e-16 * x:
             break
     return x
-
-
-def safe_time(gap: float, away: float, most: float) -> float:
-    """Return when a gap that opens at a rate closes, pulled by no more than `most` > 0."""
-    root = math.sqrt(away * away + 2.0 * most * gap)
-    return (away + root) / most if away >= 0.0 else 2.0 * gap / (root - away)
 
 
 def leap(law: Law, segment: FloatArray, begin: State, peak: float) -> Step:
@@ -288,7 +292,7 @@ def march(
             resting = j
             j, rise, side, lead = next_uplift(moving, j, tau, laws)
             n = sample_still(notes, min(rise, last), n, 0.0, 0.0)
-            watch_rest(limits, moving, resting, tau, rise)
+            watch_rest(limits, moving, resting, tau, rise, work)
             if side == 0.0:
                 outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
                 return outcome, right, left, steps, impacts, events, last, 0.0, 0.0
@@ -325,7 +329,8 @@ def march(
             side, wait = after_impact(laws, moving, j, tau, turned, v)
             lead = 1 if v != 0.0 else 2
             if side == 0.0:
-                watch_train(limits, law, turned, ground(moving, j, tau), v)
+                heavy = weight(moving, j, tau)
+                watch_train(limits, law, turned, ground(moving, j, tau), v, heavy)
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
     return TOO_LONG, right, left, steps, impacts, events, tau, y, v
@@ -336,4 +341,6 @@ MARCH = Kernel(march)
 
 def workspace() -> FloatArray:
     """Return the spare numbers that `march` needs."""
-    return np.empty((MAX_DEPTH + 12, ORDER + 1))
+    work = np.zeros((MAX_DEPTH + 13, ORDER + 1))
+    work[-1, 0] = 1.0
+    return work

@@ -13,18 +13,23 @@ import math
 
 from analytic.kernels.closed_form import is_lost, turning_rotation, work_to
 from analytic.kernels.law import FloatArray, Law
-from analytic.kernels.polynomial import highest, next_root, value
+from analytic.kernels.polynomial import ORDER, highest, next_root, stretch, value
 from analytic.kernels.rest import acceleration, strongest_between
+from analytic.kernels.taylor import expand_forcing, expand_weight
 
 NOTHING_YET = (1.0, 0.0, 1.0, 0.0)
 """Limits before the first state, of a block at rest on a base at rest."""
 
+SLOWEST = 1e-9
+"""Frequency [p] below which a segment is one series, however long."""
 MOST_REFINEMENTS = 30
 REFINED = 1e-14
 """Part of the friction ratio below which a better one changes nothing."""
 
 
-def forces(law: Law, side: float, a: float, y: float, v: float) -> tuple[float, float]:
+def forces(
+    law: Law, side: float, a: float, y: float, v: float, weight: float = 1.0
+) -> tuple[float, float]:
     """Return (normal, horizontal) contact force over weight of the exact model.
 
     V and U of EQUATIONS.md, "The rocking frame", with the lever R of a block, R p^2 = 3g/4: from
@@ -32,9 +37,9 @@ def forces(law: Law, side: float, a: float, y: float, v: float) -> tuple[float, 
     vertical.
     """
     z = law.alpha - y
-    rate = acceleration(law, side, a, y)
+    rate = acceleration(law, side, a, y, weight)
     horizontal = a + 0.75 * side * (v * v * math.sin(z) + rate * math.cos(z))
-    normal = 1.0 + 0.75 * (rate * math.sin(z) - v * v * math.cos(z))
+    normal = weight + 0.75 * (rate * math.sin(z) - v * v * math.cos(z))
     return normal, horizontal
 
 
@@ -44,26 +49,43 @@ def keep(limits: FloatArray, normal: float, horizontal: float) -> None:
     limits[1] = max(limits[1], abs(horizontal) / normal if normal > 0.0 else math.inf)
 
 
-def watch(limits: FloatArray, law: Law, side: float, a: float, y: float, v: float) -> None:
+def watch(
+    limits: FloatArray, law: Law, side: float, a: float, y: float, v: float, weight: float = 1.0
+) -> None:
     """Watch one state of a block."""
-    normal, horizontal = forces(law, side, a, y, v)
+    normal, horizontal = forces(law, side, a, y, v, weight)
     keep(limits, normal, horizontal)
 
 
-def watch_rest(limits: FloatArray, segments: FloatArray, j: int, begin: float, end: float) -> None:
+def watch_rest(
+    limits: FloatArray, segments: FloatArray, j: int, begin: float, end: float, work: FloatArray
+) -> None:
     """Watch a block at rest between two times: it needs the friction that carries it along."""
-    if len(limits) > 0:
+    if len(limits) > 0 and len(segments[0]) == 7:
         limits[1] = max(limits[1], strongest_between(segments, j, begin, end))
+    elif len(limits) > 0:
+        for i in range(j, len(segments)):
+            t, last = max(begin, segments[i][0]), min(end, segments[i][1])
+            while t <= last:
+                h = min(last - t, 1.0 / max(segments[i][3], segments[i][10], SLOWEST))
+                expand_forcing(segments[i], t, 1.0, ORDER, work[0])
+                expand_weight(segments[i], t, ORDER, work[1])
+                stretch(work[0], ORDER, h, work[6])
+                stretch(work[1], ORDER, h, work[5])
+                watch_ratio(limits, ORDER, 1.0, work)
+                t = t + h if h > 0.0 else math.inf
 
 
-def watch_train(limits: FloatArray, law: Law, side: float, a: float, v: float) -> None:
+def watch_train(
+    limits: FloatArray, law: Law, side: float, a: float, v: float, weight: float
+) -> None:
     """Watch a train of impacts that is summed, from its begin to rest."""
     if v == 0.0 or len(limits) == 0:
         return
-    watch(limits, law, side, a, 0.0, v)
-    watch(limits, law, -side, a, 0.0, law.eta * v)
-    watch(limits, law, side, a, 0.0, 0.0)
-    watch(limits, law, -side, a, 0.0, 0.0)
+    watch(limits, law, side, a, 0.0, v, weight)
+    watch(limits, law, -side, a, 0.0, law.eta * v, weight)
+    watch(limits, law, side, a, 0.0, 0.0, weight)
+    watch(limits, law, -side, a, 0.0, 0.0, weight)
 
 
 def watch_step(
@@ -100,15 +122,19 @@ def forget_fall(limits: FloatArray) -> None:
 
 
 def watch_part(limits: FloatArray, order: int, h: float, x: float, work: FloatArray) -> None:
-    """Watch a part of a step.
+    """Watch a part of a step."""
+    expand_forces(order - 2, h, work, work[5], work[6], work[7])
+    watch_ratio(limits, order - 2, x, work)
+
+
+def watch_ratio(limits: FloatArray, degree: int, x: float, work: FloatArray) -> None:
+    """Watch forces whose series, of a step on [0, 1], are in work[5] and work[6].
 
     The least normal force N is a minimum of its polynomial. The friction is the largest ratio mu
     of abs(T) to N: T - mu N has no positive maximum, and each one there is gives a better mu
     (Dinkelbach 1967).
     """
     normal, tangential, excess, spare = work[5], work[6], work[7], work[8:]
-    degree = order - 2
-    expand_forces(degree, h, work[:4], normal, tangential, excess)
     for i in range(degree + 1):
         excess[i] = -normal[i]
     least, _ = highest(excess, degree, 0, x, max(-normal[0], -float(limits[0])), spare)
@@ -139,7 +165,7 @@ def expand_forces(
     tangential: FloatArray,
     square: FloatArray,
 ) -> None:
-    """Write the series of the contact forces over weight, on [0, 1] for a step."""
+    """Write the series of the contact forces over m g, on [0, 1] for a step, from its work."""
     y, f, sine, cosine = series[0], series[1], series[2], series[3]
     scale = 1.0
     for n in range(degree + 1):
@@ -150,7 +176,7 @@ def expand_forces(
             gained = (i + 1) * (i + 2) * y[i + 2]
             pressed += gained * sine[n - i] - square[i] * cosine[n - i]
             turned += gained * cosine[n - i] + square[i] * sine[n - i]
-        normal[n] = scale * ((1.0 if n == 0 else 0.0) + 0.75 * pressed)
+        normal[n] = scale * (series[-1][n] + 0.75 * pressed)
         tangential[n] = scale * (f[n] + 0.75 * turned)
         scale *= h
 
@@ -188,13 +214,8 @@ def watch_swing(limits: FloatArray, law: Law, energy: float, foot: float, top: f
     low, high = min(first, last), 1.0 if foot < law.alpha < top else max(first, last)
     turn = math.cos(law.alpha) + energy
     spread = math.sqrt(max(99.0 - 35.0 * turn * turn, 0.0))
-    for place in (
-        low,
-        high,
-        turn / 3.0,
-        (19.0 * turn - spread) / 33.0,
-        (19.0 * turn + spread) / 33.0,
-    ):
+    roots = (19.0 * turn - spread) / 33.0, (19.0 * turn + spread) / 33.0
+    for place in (low, high, turn / 3.0, roots[0], roots[1]):
         c = min(max(place, low), high)
         normal = 0.25 + c * (2.25 * c - 1.5 * turn)
         tangential = 0.75 * math.sqrt(1.0 - c * c) * (2.0 * turn - 3.0 * c)

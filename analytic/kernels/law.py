@@ -11,13 +11,15 @@ Each side has a law of its own; the two are equal unless the mass stands off the
 Units are those of p and g: rotations in rad, times (tau, h) in 1/p, the rate v of y in rad p,
 energies ("work") v^2/2 in p^2, accelerations a and f = s a in g. A segment, shape (7,), is a row
 of `motion.SEGMENT_COLUMNS` in them: start, end [1/p], amplitude [g], omega [p], phase [rad], offset
-[g], slope [g p]. A ground motion is segments, shape (m, 7), of which j is the number of one. A
-series is an array of coefficients c[i] of sum c[i] t^i, of a degree `order`.
+[g], slope [g p]; where the base moves vertically too, seven more are of its acceleration upwards. A
+ground motion is segments, of which j is the number of one. A series is an array of coefficients
+c[i] of sum c[i] t^i, of a degree `order`.
 
 A step of length h goes from a state `begin`, where the first `lead` coefficients of y are zero. Its
 part x is in [0, 1], and d[i] are the coefficients of y in x. The rows of `work`, of order + 1
-numbers or more, are the series of y, f, sin z and cos z, then d; from 5 on they are spare, and
-MAX_DEPTH + 3 rows or more suffice for any `work` that is not a step's.
+numbers or more, are the series of y, f, sin z and cos z, then d, and in the last one that of the
+weight over m g; from 5 on they are spare, and MAX_DEPTH + 3 rows or more suffice for any `work`
+that is not a step's.
 """
 
 from typing import NamedTuple, TypeAlias

@@ -22,9 +22,22 @@ def ground(segments: FloatArray, j: int, tau: float) -> float:
 
 def shaking(segment: FloatArray, tau: float) -> float:
     """Return the ground acceleration [g] on a segment."""
-    start, _, amplitude, omega, phase, offset, rate = segment
+    start, _, amplitude, omega, phase, offset, rate = segment[:7]
     t = tau - start
     return amplitude * math.sin(omega * t + phase) + offset + rate * t
+
+
+def changing(segment: FloatArray, tau: float) -> float:
+    """Return the rate [g p] of the ground acceleration on a segment."""
+    start, _, amplitude, omega, phase, _, rate = segment[:7]
+    return amplitude * omega * math.cos(omega * (tau - start) + phase) + rate
+
+
+def weight(segments: FloatArray, j: int, tau: float) -> float:
+    """Return the weight over m g on a segment: 1 and the upward acceleration [g]."""
+    if j < len(segments) and len(segments[j]) > 7:
+        return 1.0 + shaking(segments[j][7:], tau)
+    return 1.0
 
 
 def segment_at(segments: FloatArray, j: int, tau: float) -> int:
@@ -42,7 +55,7 @@ def strongest_between(segments: FloatArray, j: int, begin: float, end: float) ->
         if first > last:
             break
         most = max(most, abs(ground(segments, i, first)), abs(ground(segments, i, last)))
-        start, _, amplitude, omega, phase, _, _ = segments[i]
+        start, _, amplitude, omega, phase, _, _ = segments[i][:7]
         # a crest lies between two times that an odd number of quarter cycles divides
         quarter = phase - 0.5 * math.pi
         before = math.floor((omega * (first - start) + quarter) / math.pi)
@@ -51,11 +64,12 @@ def strongest_between(segments: FloatArray, j: int, begin: float, end: float) ->
     return most
 
 
-def acceleration(law: Law, side: float, a: float, y: float) -> float:
+def acceleration(law: Law, side: float, a: float, y: float, weight: float = 1.0) -> float:
     """Return y'' [rad p^2] by the equation of motion (EQUATIONS.md, "From (1) and (2)")."""
     if law.linear:
         return -law.k * law.k * (law.saddle - y + side * law.factor * a)
-    return -law.k * law.k * (math.sin(law.alpha - y) + side * a * math.cos(law.alpha - y))
+    z = law.alpha - y
+    return -law.k * law.k * (weight * math.sin(z) + side * a * math.cos(z))
 
 
 def sine_uplift(segment: FloatArray, tau: float, laws: Laws) -> tuple[float, bool]:
@@ -100,6 +114,35 @@ def ramp_uplift(segment: FloatArray, tau: float, laws: Laws) -> tuple[float, boo
     return (time if time < end - moment else math.inf), True
 
 
+def safe_time(gap: float, away: float, most: float) -> float:
+    """Return when a gap that opens at a rate closes, pulled by no more than `most`."""
+    root = math.sqrt(max(away * away + 2.0 * most * gap, 0.0))
+    if away >= 0.0:
+        return (away + root) / most if most > 0.0 else math.inf
+    return 2.0 * gap / (root - away)
+
+
+def heavy_uplift(segment: FloatArray, tau: float, side: float, onset: float) -> tuple[float, bool]:
+    """Return what `ramp_uplift` does, onto one side, where the onset grows with the weight.
+
+    The distance to the onset, whose second derivative is bounded, is followed in steps in which it
+    cannot vanish; they converge to where it does quadratically.
+    """
+    start, end, amplitude, omega = segment[:4]
+    most = abs(amplitude) * omega * omega + onset * abs(segment[9]) * segment[10] * segment[10]
+    moment, t = MOMENT * (end - start), tau
+    while t < end - moment:
+        gap = onset * (1.0 + shaking(segment[7:], t)) + side * shaking(segment, t)
+        away = onset * changing(segment[7:], t) + side * changing(segment, t)
+        if gap < -EQUAL * onset and not -gap <= moment * away:
+            return t, t > tau
+        h = safe_time(max(gap, 0.0), away, most)
+        if away < 0.0 and (gap <= EQUAL * onset or t + h == t):
+            return t, True
+        t += max(h, moment)
+    return math.inf, True
+
+
 def next_uplift(
     segments: FloatArray, j: int, tau: float, laws: Laws
 ) -> tuple[int, float, float, int]:
@@ -110,7 +153,11 @@ def next_uplift(
     """
     for i in range(j, len(segments)):
         begin = max(tau, segments[i][0])
-        if segments[i][2] != 0.0:
+        if len(segments[i]) > 7:
+            time, smooth = heavy_uplift(segments[i], begin, 1.0, laws[0].onset)
+            other, gentle = heavy_uplift(segments[i], begin, -1.0, laws[1].onset)
+            time, smooth = (time, smooth) if time < other else (other, gentle)
+        elif segments[i][2] != 0.0:
             time, smooth = sine_uplift(segments[i], begin, laws)
         else:
             time, smooth = ramp_uplift(segments[i], begin, laws)
@@ -120,15 +167,15 @@ def next_uplift(
     return len(segments), math.inf, 0.0, 0
 
 
-def time_to_rest(laws: Laws, side: float, v: float, a: float) -> float:
+def time_to_rest(laws: Laws, side: float, v: float, a: float, weight: float = 1.0) -> float:
     """Return how long [1/p] a block leaving the base goes on to rock; inf if it does not rest.
 
     The excursions last 2 v/r with the restoring accelerations r of the two sides in turn, and
     each impact multiplies the velocity by eta: a geometric series.
     """
     this, other = law_of(laws, side), law_of(laws, -side)
-    here = -acceleration(this, side, a, 0.0)
-    there = -acceleration(other, -side, a, 0.0)
+    here = -acceleration(this, side, a, 0.0, weight)
+    there = -acceleration(other, -side, a, 0.0, weight)
     if here <= 0.0 or there <= 0.0:
         return math.inf
     if v == 0.0:
@@ -147,12 +194,15 @@ def after_impact(
     restoring accelerations change by less than a part ZENO in it; the ground moves on as on
     segment j.
     """
-    now = ground(segments, j, tau)
-    wait = time_to_rest(laws, side, v, now)
-    later = ground(segments, j, tau + wait) if wait < math.inf else now
-    here = acceleration(law_of(laws, side), side, now, 0.0)
-    there = acceleration(law_of(laws, -side), -side, now, 0.0)
-    change = abs(acceleration(law_of(laws, side), side, later, 0.0) - here)
+    now, heavy = ground(segments, j, tau), weight(segments, j, tau)
+    wait = time_to_rest(laws, side, v, now, heavy)
+    end = tau + wait if wait < math.inf else tau
+    later = acceleration(
+        law_of(laws, side), side, ground(segments, j, end), 0.0, weight(segments, j, end)
+    )
+    here = acceleration(law_of(laws, side), side, now, 0.0, heavy)
+    there = acceleration(law_of(laws, -side), -side, now, 0.0, heavy)
+    change = abs(later - here)
     if wait < ZENO and change <= ZENO * min(abs(here), abs(there)):
         return 0.0, wait
     # where no velocity is left the ground lifts the block again at once

@@ -38,7 +38,7 @@ def accuracy(tolerance: float) -> Accuracy:
 
 def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: FloatArray) -> None:
     """Write the series of f, side x ground acceleration [g], into f[0..order]."""
-    start, _, amplitude, omega, phase, offset, slope = segment
+    start, _, amplitude, omega, phase, offset, slope = segment[:7]
     angle = omega * (tau - start) + phase
     f[0] = side * amplitude * math.sin(angle)
     f[1] = side * amplitude * omega * math.cos(angle)
@@ -49,8 +49,18 @@ def expand_forcing(segment: FloatArray, tau: float, side: float, order: int, f: 
     f[1] += side * slope
 
 
-def expand_exact(law: Law, order: int, work: FloatArray) -> None:
-    """Extend the series of y by the exact equation, y'' = -k^2 [sin z + f cos z]."""
+def expand_weight(segment: FloatArray, tau: float, order: int, weight: FloatArray) -> None:
+    """Write the series of the weight over m g, 1 where the base does not move vertically."""
+    if len(segment) > 7:
+        expand_forcing(segment[7:], tau, 1.0, order, weight)
+        weight[0] += 1.0
+
+
+def expand_exact(law: Law, order: int, work: FloatArray, heavy: bool) -> None:
+    """Extend the series of y by the exact equation, y'' = -k^2 [w sin z + f cos z].
+
+    The weight w is 1 unless it changes (`heavy`).
+    """
     stiffness = law.k * law.k
     y, f, sine, cosine, rate = work[0], work[1], work[2], work[3], work[4]
     sine[0] = math.sin(law.alpha - y[0])
@@ -68,7 +78,12 @@ def expand_exact(law: Law, order: int, work: FloatArray) -> None:
             s += rate[1] * cosine[i]
             c += rate[1] * sine[i]
             forced += f[i] * cosine[0]
-            pull = sine[i] + (forced + f[0] * cosine[i])
+            weighed = sine[i]
+            if heavy:
+                weighed *= work[-1][0]
+                for j in range(1, i + 1):
+                    weighed += work[-1][j] * sine[i - j]
+            pull = weighed + (forced + f[0] * cosine[i])
             y[i + 2] = -stiffness * pull * (1.0 / (i + 1)) * (1.0 / (i + 2))
         sine[i + 1] = -(s + rate[i + 1] * cosine[0]) * (1.0 / (i + 1))
         cosine[i + 1] = (c + rate[i + 1] * sine[0]) * (1.0 / (i + 1))

@@ -9,9 +9,9 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Literal
 
+from analytic.accelerograms import is_number, lines_of, shown
 from analytic.block import RigidBlock
 from analytic.slide import SlidingBlock
-from analytic.text import is_number, lines_of, shown
 from studies.cases.refusal import BadInputError
 from studies.kit.scene_options import MOST_M
 

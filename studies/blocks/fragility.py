@@ -18,12 +18,7 @@ RESAMPLED = 500
 
 
 def fragility(lines: pd.DataFrame) -> pd.DataFrame:
-    """Return a lognormal distribution of what overturns each block, and the list.
-
-    A line is a block under a record. Records under which the block has no margin are left out and
-    counted. A margin that was not found lies above the largest factor tried. The last rows are of
-    the list: for each record the least margin of a block.
-    """
+    """Return a lognormal distribution of what overturns each block, and the list."""
     kept = lines[lines["no_margin"] == ""]
     least = kept.loc[kept.groupby("record")["margin"].idxmin()] if len(kept) else kept
     groups = [*lines.groupby("name", sort=False), ("any of the list", least)]

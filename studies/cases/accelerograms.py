@@ -20,6 +20,7 @@ def read_record(
     dt: float | None = None,
     *,
     insist: bool = True,
+    option: str = "--record",
 ) -> Record:
     """Read a recorded ground acceleration [m/s2], as `Record.read` does, and correct it."""
     try:
@@ -27,14 +28,14 @@ def read_record(
     except ValueError as error:
         problem = re.sub(r"; units(?= must)", "; --units", str(error).removeprefix("path"))
         problem = re.sub(r"; dt(?=,| must not)", "; --record-dt", problem)
-        raise BadInputError(f"--record{problem}") from error
+        raise BadInputError(f"{option}{problem}") from error
     try:
         if baseline == "constant" or baseline == "linear":
             record = record.detrended(baseline)
     except ValueError as error:
-        raise BadInputError(f"--record is {str(path)!r}; {error}") from error
+        raise BadInputError(f"{option} is {str(path)!r}; {error}") from error
     if record.peak == 0.0:
-        raise BadInputError(f"--record is {str(path)!r}; it is zero throughout, and must not be")
+        raise BadInputError(f"{option} is {str(path)!r}; it is zero throughout, and must not be")
     return record
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 Groups: TypeAlias = Mapping[str, Mapping[str, str]]
 """Title of a group in the help -> its commands, each with its purpose."""
-PLACES = {"report": "page.chapters", "readme": "page.readme"}
+PLACES = {"report": "page.page", "readme": "page.readme"}
 """Command -> its module, where that has another name."""
 REFUSAL = re.compile(r".+ (?:is|are) .+[;,] .*\bmust ")
 """A refusal of a value, whoever finds it: "width is 0; it must be positive"."""

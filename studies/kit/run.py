@@ -192,13 +192,13 @@ def on_cluster(address: str, limit_s: float, jobs: Sequence[Job], measure: Measu
             client.submit(_work, [jobs[n] for n in part], measure, limit_s, pure=False): part
             for part in parts
         }
-        ended = SimpleQueue[Any]()
+        answered = SimpleQueue[Any]()
         for task in tasks:
-            task.add_done_callback(ended.put)
+            task.add_done_callback(answered.put)
         left = len(tasks)
         while left:
             try:
-                task = ended.get(timeout=ALONE_S)
+                task = answered.get(timeout=ALONE_S)
             except Empty:
                 if client.nthreads():
                     continue
@@ -215,12 +215,8 @@ def on_cluster(address: str, limit_s: float, jobs: Sequence[Job], measure: Measu
 def place_of(running: "Computing", *, at_once: bool = False) -> Place:
     """Return where the options let jobs run; `at_once` as for `studies.kit.run.local`."""
     if running.cluster is None:
-        return partial(
-            local,
-            workers=running.jobs or usable_cores(),
-            limit_s=running.time_limit,
-            at_once=at_once,
-        )
+        workers = running.jobs or usable_cores()
+        return partial(local, workers=workers, limit_s=running.time_limit, at_once=at_once)
     return partial(on_cluster, running.cluster, running.time_limit)
 
 

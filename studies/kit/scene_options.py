@@ -11,10 +11,10 @@ from analytic.accelerograms import Units
 from analytic.block import GRAVITY, RigidBlock
 from analytic.checks import LEAST, MOST
 from analytic.frame import RockingFrame
-from analytic.motion import Motion, SinePulse, Still
+from analytic.motion import Motion, SinePulse, Still, both_ways
 from analytic.record import Record
 from analytic.slide import SlidingBlock
-from analytic.start import LEAST_TILT, strongest
+from analytic.start import LEAST_TILT, check_vertical, strongest
 from engines.scene import System, free_rocking_window
 from studies.cases.accelerograms import Baseline, read_record
 from studies.cases.paper import PULSES
@@ -62,6 +62,15 @@ class Excitation:
         Before scaling, subtract the record's mean (constant) or best-fitting line (linear) with
         scipy.signal.detrend. By default nothing is subtracted, and the velocity of the base at the
         end is reported.
+    vertical
+        A recorded acceleration of the base upwards, in a file as of --record; --scale and --pga
+        leave it alone. Only the exact model takes it.
+    vertical_amplitude
+        Amplitude of a pulse of the base upwards [g], instead of --vertical; it may be negative.
+    vertical_omega
+        Circular frequency of that pulse [rad/s].
+    vertical_half_cycles
+        Its number of half cycles, 2 by default.
     tilt
         Initial rotation in units of α; a block with a positive one leans to the right. Without a
         pulse or record the block is released on ground at rest.
@@ -81,6 +90,10 @@ class Excitation:
     scale: arguments.Positive | None = None
     pga: arguments.Positive | None = None
     baseline: Annotated[Baseline, arguments.one_of(Baseline)] | None = None
+    vertical: arguments.Place | None = None
+    vertical_amplitude: arguments.Finite | None = None
+    vertical_omega: arguments.Positive | None = None
+    vertical_half_cycles: arguments.HalfCycles | None = None
     tilt: arguments.Finite | None = None
     rate: arguments.Finite | None = None
 
@@ -88,7 +101,11 @@ class Excitation:
         """Return the motion that the options mean, and θ [rad] and its rate [rad/s] at t = 0."""
         if isinstance(block, SlidingBlock):
             arguments.refuse_given(self._given("tilt", "rate"), "only where something rocks")
-        motion = self._motion()
+        motion, upward = self._motion(), self._upward()
+        if upward is not None:
+            with arguments.as_bad_input("--"):
+                motion = both_ways(motion, upward)
+                check_vertical(block, motion, linear=False)
         return motion, self._start(block, motion)
 
     def _given(self, *names: str) -> dict[str, object]:
@@ -99,9 +116,11 @@ class Excitation:
         if self.record is not None:
             arguments.refuse_given(pulse, "only without --record")
             return self._recorded(self.record)
-        arguments.refuse_given(
-            self._given("record_dt", "units", "scale", "pga", "baseline"), "only with --record"
-        )
+        arguments.refuse_given(self._given("scale", "pga"), "only with --record")
+        if self.vertical is None:
+            arguments.refuse_given(
+                self._given("record_dt", "units", "baseline"), "only with --record"
+            )
         released = (self.tilt or self.rate) and set(pulse.values()) == {None}
         return Still() if released else self._pulse()
 
@@ -126,6 +145,23 @@ class Excitation:
                 half_cycles=self.half_cycles or PULSES[self.pulse or "full-sine"],
                 phase=self.phase or 0.0,
             )
+
+    def _upward(self) -> Motion | None:
+        pulse = self._given("vertical_amplitude", "vertical_omega", "vertical_half_cycles")
+        if self.vertical is not None:
+            arguments.refuse_given(pulse, "only without --vertical")
+            how = self.units, self.baseline, self.record_dt
+            return read_record(self.vertical, *how, option="--vertical")
+        if set(pulse.values()) == {None}:
+            return None
+        amplitude_g, omega = arguments.required(
+            "a vertical pulse requires both",
+            vertical_amplitude=self.vertical_amplitude,
+            vertical_omega=self.vertical_omega,
+        )
+        cycles = self.vertical_half_cycles or PULSES["full-sine"]
+        with arguments.as_bad_input("--vertical-"):
+            return SinePulse.in_g(amplitude_g, omega=omega, half_cycles=cycles)
 
     def _start(self, block: System, motion: Motion) -> tuple[float, float]:
         theta, rate = (self.tilt or 0.0) * block.alpha, (self.rate or 0.0) * block.alpha * block.p

@@ -83,11 +83,7 @@ def parts_of(method: str) -> tuple[str, str, str]:
 def cheapest_kept(
     lines: pd.DataFrame, keeps: pd.Series[Any], *methods: pd.Series[Any]
 ) -> pd.Series[Any] | None:
-    """Return the line of least wall_s that keeps an error as every finer one does; None without.
-
-    The lines are settings from coarse to fine, of one method or of those in `methods`; `keeps` says
-    whether each keeps the error by itself.
-    """
+    """Return the line of least wall_s that keeps an error as every finer one does; None without."""
     from_fine = keeps.astype(bool)[::-1]
     kept = (from_fine.groupby(list(methods), sort=False) if methods else from_fine).cummin()[::-1]
     return lines[kept].sort_values("wall_s").iloc[0] if kept.any() else None

@@ -86,10 +86,7 @@ def _different(cases: pd.DataFrame) -> tuple[Posed, FloatArray | None, NDArray[n
 def conditioning_of_one(
     block: Rocker, motion: Motion, start: tuple[float, float], exact: Response
 ) -> dict[str, float]:
-    """Return the condition number kappa and the sensitivity of an exact peak; nan where it failed.
-
-    See EQUATIONS.md, "Condition numbers".
-    """
+    """Return the condition number and sensitivity of an exact peak, as EQUATIONS.md has them."""
     if exact.outcome is Outcome.FAILED:
         return {"kappa": math.nan, "sensitivity": math.nan}
     kappa, _ = conditioning(block, motion, start=start)

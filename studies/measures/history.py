@@ -64,11 +64,7 @@ def flights(block: Rocker, motion: Motion, response: Response) -> list[FloatArra
 
 
 def growth(block: Rocker, motion: Motion, response: Response) -> float:
-    """Return the largest rise of energy in free rocking, after the motion, over its largest value.
-
-    A rise is counted from the least energy before it: free rocking can only lose energy. It is nan
-    where no flight is long enough to tell.
-    """
+    """Return by how much energy rises in free rocking, which can only lose it, over its largest."""
     parts = flights(block, motion, response)
     if not parts:
         return math.nan

@@ -160,10 +160,7 @@ def moved(
     system: System = BLOCK,
     each: int = 1,
 ) -> tuple[Moment, FloatArray]:
-    """Return a world's moment, and its block's poses: at first, and after each pull.
-
-    A pull, along and up [m/s2], lasts for a time [s] and so many steps.
-    """
+    """Return a world's moment, and its block's poses: at first, and after each pull."""
     frame = "base" if "base" in source.declared.frames else None  # a base that moves is pulled, too
     dt_s = time_s / each
     how = {"step": dt_s * system.p, "frame": frame, "start": start, "depth": DEPTH, "rest_s": 0.0}

@@ -1,22 +1,27 @@
-"""One self-contained page: what each study found, its figures, its tables, what failed."""
+"""Every study, and one self-contained page: what each found, its figures, tables and failures."""
 
 from __future__ import annotations
 
 import base64
+import contextlib
 import io
 import math
+import sys
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
+from tqdm import tqdm
 
 from engines import ENGINES
 from studies.cases.paper import PULSES
+from studies.kit import app
+from studies.kit.arguments import Place
 from studies.kit.pictures import lay_out, write_points
 from studies.kit.say import number, part
-from studies.kit.store import engines_of, provenance_of
+from studies.kit.store import FolderError, engines_of, provenance_of
 from studies.kit.tables import table_in, write_text
 from studies.measures.presets import in_order, look_of
 from studies.measures.wrongness import MEANINGS, WORDS
@@ -25,10 +30,69 @@ from studies.page.facts import presets, wrong
 from studies.sources.registry import resolve
 from studies.sweep import STUDY as SWEEP
 
+PAGE = "report.html"
 SHOWN = 20
 """Rows of a table, and failures, that are shown; files hold all of them."""
 AXES = ("half_cycles", "aspect", "width_m", "onsets", "omega_over_p")
 """Columns of the grid of cases, the last running fastest."""
+
+
+def command(*, out: Place, full: bool = False) -> int:
+    """Run every study and write one self-contained page about them, report.html.
+
+    The quick studies take six minutes on two cores, the full ones two and a half hours. To continue
+    an interrupted report, give the same command again.
+
+    Parameters
+    ----------
+    out
+        Folder for the results, one inside for each study, and for report.html.
+    full
+        Run the full studies, as published, instead of the quick ones.
+    """
+    _prepare(out, full)
+    codes = []
+    parts = [part for part in PARTS if not part.needs]
+    with tqdm(parts, disable=None, unit="study") as bar:
+        for part in bar:
+            bar.set_description(part.folder)
+            if bar.disable:  # no terminal: a line for each, so that a log shows where it is
+                print(f"{part.folder} …", file=sys.stderr, flush=True)
+            code = fill(part, out, full)
+            if code > 1:
+                return code
+            codes.append(code)
+    write_page(out / PAGE, out, full)
+    for part in parts:
+        print(f"{part.folder}: {part.study.finding(part.study.read(out / part.folder))}")
+    print(out / PAGE)
+    return max(codes)
+
+
+def _prepare(out: Path, full: bool) -> None:
+    path, kind = out / "kind.txt", "full" if full else "quick"
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        strange = sorted(each.name for each in out.iterdir() if each.name != f".part.{path.name}")
+        if strange and not path.is_file():
+            problem = f"it must be new or empty, or hold a report, and it holds {strange[0]!r}"
+            raise FolderError(out, problem)
+        held = path.read_text(errors="replace").strip() if path.is_file() else kind
+        if held != kind:
+            raise FolderError(out, f"it holds a {held} report; a {kind} one needs another folder")
+        write_text(path, kind + "\n")
+    except OSError as error:
+        problem = f"it must be a folder that can be written ({error.strerror or error})"
+        raise FolderError(out, problem) from error
+
+
+def fill(part: Part, out: Path, full: bool) -> int:
+    """Run the command of a part, without its words; return its exit code."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        code = app.run({"": {part.name: ""}}, part.words(out / part.folder, full))
+    if code == 1:
+        print(f"{part.folder}: some rows failed; the page names them", file=sys.stderr)
+    return code
 
 
 def write_page(path: Path, folder: Path, full: bool) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from analytic import MODELS, integrate, simulate
 from analytic.block import RigidBlock
-from analytic.motion import Motion
+from analytic.motion import BothWays, Motion
 from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines import ENGINES, core_engines, installed_engines
@@ -53,6 +53,8 @@ class Source:
             block.is_even or self.engine or self.kind == "model"
         ):
             raise ValueError(f"{self.name} takes no block with an offset; models and engines do")
+        if isinstance(motion, BothWays) and self.name != "exact":
+            raise ValueError(f"{self.name} takes no vertical motion; only exact does")
         if getattr(self.call, "func", None) is run_engine:
             self.declared.use(scene_of(block, motion, self.preset, **options))
             return

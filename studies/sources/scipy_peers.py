@@ -20,7 +20,7 @@ from analytic.kernels.rest import acceleration, after_impact, ground, next_uplif
 from analytic.motion import FloatArray, Motion
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import FAILURES
-from analytic.start import REST, Posed, pose
+from analytic.start import REST, Posed, check_vertical, pose
 
 MOST_EXCURSIONS, LYING = 2000, 0.5 * math.pi
 
@@ -38,6 +38,7 @@ def solve_ivp_response(
     """Solve the exact model with `scipy.integrate.solve_ivp`, its events and one of its methods."""
     from scipy.integrate import solve_ivp
 
+    check_vertical(block, motion)
     posed = pose(block, motion, "exact", start, duration, times)
     tolerances = {"rtol": rtol, "atol": 1e-3 * rtol * block.alpha}
     solve = partial(solve_ivp, method=method, dense_output=times is not None, **tolerances)

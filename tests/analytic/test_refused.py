@@ -10,6 +10,7 @@ from given import BLOCK, G
 from analytic import Delayed, Record, RigidBlock, RockingFrame, SinePulse, SlidingBlock, Still
 from analytic.cases import peak_ratios
 from analytic.maps import overturning_modes
+from analytic.motion import BothWays
 from analytic.simulate import simulate
 from analytic.steppers import integrate
 from engines import Scene
@@ -30,6 +31,7 @@ USUAL = {
     SinePulse: {"amplitude": 4.0, "omega": 6.0, "half_cycles": 1},
     Record: {"dt": 0.1, "samples": [1.0, 2.0]},
     Delayed: {"motion": HALF_SINE, "rest_s": 1.0},
+    BothWays: {"upward": HALF_SINE},
     Record.read: {"path": "nowhere.txt"},
     simulate: SHAKEN,
     integrate: SHAKEN,
@@ -38,6 +40,9 @@ USUAL = {
 }
 """What can be asked, and with what it is answered."""
 
+NEVER = ({"model": "housner"}, {"block": BOX}, {"block": RockingFrame(**SIZE, load=1.0)})
+DROP = SinePulse.in_g(1.1, omega=9.0, half_cycles=2)
+LONG = SinePulse(amplitude=1.0, omega=1.0, half_cycles=10**7)
 NO_SIZE = (0, -1, INF, NAN, "wide", None)
 WRONG = {
     RigidBlock: {
@@ -45,6 +50,8 @@ WRONG = {
         "height": (*NO_SIZE, 1e308),
         "gravity": (*NO_SIZE, 1e-310),
         "restitution": (-0.1, 1.1, INF, NAN),
+        "offset": (0.25, NAN),
+        "inertia": (0.0,),
     },
     RockingFrame: {
         "columns": (1, 2.5, 101, 1e8),
@@ -88,6 +95,7 @@ WRONG = {
 TOGETHER = [
     (RigidBlock, {"width": 1e-100, "height": 1e60}, "width is 1e-100 and height 1e+60; alpha"),
     (RigidBlock, {"width": 1e60, "height": 1e-100}, "width is 1e+60 and height 1e-100; alpha"),
+    (RigidBlock, {"offset": 0.1, "restitution": 0.5}, "restitution is 0.5; it must"),
     (SinePulse, {"amplitude": 1e200, "omega": 1e-100}, "amplitude is 1e+200 and omega 1e-100; "),
     (SinePulse, {"half_cycles": 10**400}, "half_cycles is 1000"),
     (Record, {"samples": [1.0]}, "two or more"),
@@ -101,6 +109,10 @@ TOGETHER = [
     (Record.read, {"units": "feet"}, "units must be among g, mg, m/s2"),
     (simulate, {"times": [1.0, 0.5]}, "increasing"),
     *((ask, {**RELEASED, "times": [-0.5, 0.5]}, "times begin at -0.5") for ask in ROUTES),
+    (simulate, {"vertical": DROP}, "falls to -10.791 m/s2"),
+    *((simulate, {"vertical": HALF_SINE, **it}, "only the exact model of a R") for it in NEVER),
+    (BothWays, {"level": LONG}, "half_cycles is 1e+07"),
+    (integrate, {"motion": BothWays(HALF_SINE, HALF_SINE)}, "vertical is given; only the exact"),
     (simulate, {"block": BOX, "model": "housner"}, "a SlidingBlock has only 'exact'"),
     (simulate, {"block": BOX, "start": 3}, "start is 3; it must be x"),
     (simulate, {"block": BOX, "duration": 0.1}, "duration is 0.1"),

@@ -88,7 +88,7 @@ def test_the_size_of_a_block_does_not_matter(engine, preset):
     assert peaks == pytest.approx([peaks[1]] * 3, rel=within)
 
 
-@pytest.mark.parametrize(("engine", "preset"), uses.in_both_frames(uses.TUNED))
+@pytest.mark.parametrize(("engine", "preset"), uses.BOTH_FRAMES)
 def test_frames_agree(engine, preset):
     """A moving base is the body force -m u_g'': the two differ by rounding and slip alone."""
     base, world = (rocked(engine, preset=preset, frame=frame) for frame in FRAMES)

@@ -1,19 +1,23 @@
-"""Scenes of other things than one block: a frame, a slide."""
+"""Scenes of other things than one even block: a frame, a slide, a mass off the middle."""
 
 import math
 import re
+from dataclasses import replace
+from itertools import islice
 
+import numpy as np
 import pytest
+from declared import NUISANCE, equal_to
 from given import FULL_SINE as SINE
 from known import Bare, ScriptedWorld, standing
-from uses import HERE, agreed, rocked, scene
+from uses import CORE, HERE, agreed, rocked, scene
 
-from analytic import RockingFrame, SinePulse, SlidingBlock, Still
+from analytic import RigidBlock, RockingFrame, SinePulse, SlidingBlock, Still, conditioning
 from analytic.response import Outcome, Reason
 from engines.declaration import Stepping
-from engines.run.run import simulate_world
+from engines.run.run import build, simulate_world
 from engines.world import Moment, Pose
-from studies.cases.drawn import RandomFrame
+from studies.cases.drawn import RandomFrame, draw
 
 STACKERS = ("pybullet", "box2d", "dart")
 """Engines that are helped where frames land, or have code of their own for it."""
@@ -185,10 +189,9 @@ def test_a_frame_is_followed_beyond_its_first_turn_and_as_long_as_it_is_one(off,
         assert found.steps == math.ceil(posed.watched / 1e-3)
 
 
-BOXED = ("mujoco", "pymunk", "box2d", "rapier", "physx")
-
-
-@pytest.mark.parametrize("engine", [name for name in HERE if name in BOXED])
+@pytest.mark.parametrize(
+    "engine", sorted(HERE.keys() & {"mujoco", "pymunk", "box2d", "rapier", "physx"})
+)
 def test_a_base_that_is_a_box_is_as_long_as_a_slide(engine):
     box = SlidingBlock(width=0.4, height=0.15, friction=0.1)
     found = rocked(engine, Still(), system=box, start=(0.0, 6.0), frame="world", preset="default")
@@ -242,3 +245,50 @@ def test_columns_keep_to_their_beam_in_mujoco(hard):
     exact, found = agreed("mujoco", case.motion, system=case.block, preset="tuned")
     assert found.observables["parting"] < 1e-6
     assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=5e-3)
+
+
+UNEVEN = RigidBlock(width=0.6, height=1.8, offset=0.08)
+HOLDING = [name for name, engine in HERE.items() if engine.offsets]
+
+
+def drawn():
+    """Yield unlike blocks with pulses that they survive, and to which their peaks are calm."""
+    rng = np.random.default_rng(65)
+    for case in draw(65):
+        offset = 0.5 * case.block.width * rng.uniform(-0.3, 0.3)
+        block = replace(case.block, restitution=None, offset=offset)
+        if abs(conditioning(block, case.motion)[0]) < 10.0:
+            yield block, case.motion
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("engine", CORE)
+def test_random_blocks_come_within_a_hundredth(engine):
+    for block, motion in islice(drawn(), 10):
+        exact, found = agreed(engine, motion, system=block, preset="tuned")
+        assert found.peak_ratio == pytest.approx(exact.peak_ratio, rel=1e-2), (block, motion)
+
+
+@pytest.mark.parametrize("engine", HOLDING)
+def test_a_mirrored_block_has_the_mirrored_response(engine):
+    other = replace(UNEVEN, restitution=None, offset=-UNEVEN.offset)
+    right = rocked(engine, SINE, system=UNEVEN, preset="tuned").peak_sides
+    left = rocked(engine, replace(SINE, amplitude=-SINE.amplitude), system=other, preset="tuned")
+    within = max(equal_to(engine), NUISANCE.get(engine, 0.0))
+    assert right == pytest.approx(left.peak_sides[::-1], rel=within)
+    assert min(right) > 0.05
+
+
+@pytest.mark.parametrize("engine", HOLDING)
+def test_a_block_that_turns_on_its_strong_side_falls_over_the_weak_one(engine):
+    """It sets out from where an even one would, though its mass is elsewhere and as fast."""
+    block = replace(UNEVEN, restitution=None, offset=-0.1)
+    start = (0.6 * block.sides[0].alpha, 0.3)
+    asked = scene(Still(), system=block, start=start, preset="tuned")
+    even = replace(asked, system=RigidBlock(width=0.6, height=1.8))
+    worlds = [build(HERE[engine].use(each)) for each in (asked, even)]
+    states = [np.array(world.state()) for world in worlds]
+    assert states[0] == pytest.approx(states[1], abs=equal_to(engine, 1e-6))
+    exact, found = agreed(engine, Still(), system=block, preset="tuned", start=start)
+    within = max(1e-4, NUISANCE.get(engine, 0.0))
+    assert found.peak_sides == pytest.approx(exact.peak_sides, rel=within)

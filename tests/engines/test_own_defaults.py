@@ -6,12 +6,13 @@ from collections import defaultdict
 
 import numpy as np
 import pytest
-from uses import BLOCK, HERE, rocked, scene
+from uses import BLOCK, HERE, SHAKEN, agreed, pulse, rocked, scene
 
 from analytic import RigidBlock, SinePulse, simulate
-from analytic.response import Reason
+from analytic.response import Outcome, Reason
 from engines.parts import imported
-from engines.run.run import build
+from engines.pybullet import NAIVE
+from engines.run.run import LAG, build
 
 OWN = "friction of a box of which nothing is said"
 
@@ -223,3 +224,35 @@ def test_what_naive_mujoco_does_not_set_is_the_library_s_own():
     for name in ("eq_solref", "eq_solimp"):
         assert np.array_equal(getattr(read, name), getattr(bare, name)), name
     world.close()
+
+
+LAGS_S = {
+    "pybullet": (0.8 / 0.2 * NAIVE.step_s, 1e-2),  # a fifth of its error a step
+    "mujoco": (2.0 * 0.02 * 0.95, 5e-2),  # damping over stiffness of its weld
+}
+"""Engine -> by how long its floor lags behind a steady velocity, and within what part."""
+LED_M = {"drake": 1e-7, "newton": 1e-6}
+"""Engine -> by less than what the floor is off that it leads."""
+
+
+@pytest.mark.parametrize("engine", [name for name in LAGS_S if name in HERE])
+def test_the_floor_lags_by_what_holds_it(engine):
+    lag_s, within = LAGS_S[engine]
+    lag = rocked(engine, preset="default").observables[LAG]
+    assert lag == pytest.approx(lag_s * 2.0 * SHAKEN.amplitude / SHAKEN.omega, rel=within)
+
+
+@pytest.mark.parametrize("engine", [name for name in LED_M if name in HERE])
+def test_a_floor_that_is_led_is_where_it_should_be(engine):
+    exact, response = agreed(engine, preset="default", frame="world")
+    assert 0.0 < response.observables[LAG] < LED_M[engine]
+    assert response.peak_ratio == pytest.approx(exact.peak_ratio, rel=0.2)
+
+
+@pytest.mark.parametrize("engine", [name for name in LAGS_S if name in HERE])
+@pytest.mark.parametrize("onsets", [0.8, -0.8])
+def test_what_stands_on_a_floor_that_lags_is_at_rest(engine, onsets):
+    """A block is seen from where the floor is, not from where it should be."""
+    response = rocked(engine, pulse(onsets, 3.0, 2), preset="default")
+    assert response.outcome is Outcome.AT_REST
+    assert response.observables[LAG] > 1e-3

@@ -41,14 +41,7 @@ def test_steps_end_on_what_the_motion_does_and_on_the_uplift(steps):
     assert all(step.dt_s <= LOOSE * (1.0 + 1e-9) for step in aloft)
 
 
-def test_steps_end_on_impacts(steps):
-    for impact in EXACT.impacts:
-        nearest = min((abs(step.end_s - impact.time), step.phase.name) for step in steps)
-        # what is left when an impact is near, of which the next step covers all
-        assert nearest[0] < 1e-6 * LOOSE
-
-
-def test_an_approach_halves_what_is_left(steps):
+def test_steps_end_on_impacts_and_an_approach_halves_what_is_left(steps):
     approaches = [
         list(group)
         for phase, group in itertools.groupby(steps, key=lambda step: step.phase)
@@ -56,6 +49,8 @@ def test_an_approach_halves_what_is_left(steps):
     ]
     assert len(approaches) == len(EXACT.impacts)
     for approach, impact in zip(approaches, EXACT.impacts, strict=True):
+        # what is left when an impact is near, of which the next step covers all
+        assert min(abs(step.end_s - impact.time) for step in steps) < 1e-6 * LOOSE
         assert len(approach) > 10
         for before, after in itertools.pairwise(approach):
             assert after.dt_s == pytest.approx(0.5 * before.dt_s, rel=1e-2)

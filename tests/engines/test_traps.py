@@ -41,23 +41,19 @@ LONG = "a corrected depth spoils short steps"
 TRAPS = {
     # on two corners of H/B = 11 each iteration takes some 6 % off an impulse's error
     "a slender block takes more iterations": (
-        *("box2d", of(SLENDER, 1.5, 5.8, 1), 1e-5),
-        *({"iterations": 100}, 1e-3),
+        *("box2d", of(SLENDER, 1.5, 5.8, 1), 1e-5, {"iterations": 100}, 1e-3),
     ),
     # between its impacts the block rises by a few roundings of its height
     "small swings are seen near the origin": (
-        *("box2d", of(SLENDER, 1.5, 5.8, 3), 5e-5),
-        *({"centred": False}, 1e-4),
+        *("box2d", of(SLENDER, 1.5, 5.8, 3), 5e-5, {"centred": False}, 1e-4),
     ),
     # set by its mass alone, a block keeps the moments of inertia of 1 kg m2 and hardly rocks
     "a mass brings no inertia": (
-        *("dart", {"preset": "default"}, 0.3),
-        *({"exact_inertia": False}, 0.8),
+        *("dart", {"preset": "default"}, 0.3, {"exact_inertia": False}, 0.8),
     ),
     # in metres a pivot is pushed out of its margin at up to 1 mm/s, in 1e-5 m at 1e-8 m/s
     "corrections go by the unit of length": (
-        *("dart", {"settings": {"unit": 1e5}}, 1e-4),
-        *({"unit": 1.0}, 1e-3),
+        *("dart", {"settings": {"unit": 1e5}}, 1e-4, {"unit": 1.0}, 1e-3),
     ),
     # CENIC's own are 1e-3 m or rad a step, whatever the size: a block may go through its base
     "smaller errors of a step make smaller errors": (
@@ -66,14 +62,12 @@ TRAPS = {
     ),
     # 1e6 N/m, whatever stands on it: a light block errs little, a heavy one sinks in
     "a contact is as stiff under a heavier block": (
-        *("drake", {"preset": AT_REST, "density": 10.0}, 0.02),
-        *({"density": 1000.0}, 0.05),
+        *("drake", {"preset": AT_REST, "density": 10.0}, 0.02, {"density": 1000.0}, 0.05),
     ),
     # it goes by the normal force at the beginning of a step, of which dissipation makes much or
     # nothing; more friction does not hide that
     "friction lags behind what dissipates": (
-        *("drake", {"preset": "tuned"}, 5e-3),
-        *({"dissipation": 1e4, "friction": NO_JAM}, 0.05),
+        *("drake", {"preset": "tuned"}, 5e-3, {"dissipation": 1e4, "friction": NO_JAM}, 0.05),
     ),
     # the library's own hundredth of it in a step is a velocity that grows as the step shrinks
     LONG: (
@@ -82,8 +76,7 @@ TRAPS = {
     ),
     # two corners then correct twice what one would: weighting is what the library does itself
     "corrections without weights are made by each corner": (
-        *("newton", {"preset": "default"}, 0.01),
-        *({"weighting": False}, 0.02),
+        *("newton", {"preset": "default"}, 0.01, {"weighting": False}, 0.02),
     ),
     # the more of it the shorter the step
     "a depth that is corrected at once is noise": (
@@ -91,8 +84,7 @@ TRAPS = {
         *({"depenetration": None, "contact_offset": None}, 6e-3),
     ),
     "it iterates as slender blocks need": (
-        *("pymunk", of(THIN, 1.3, 3.0, 2, accuracy="loose"), 1e-3),
-        *({"iterations": 20}, 1e-2),
+        *("pymunk", of(THIN, 1.3, 3.0, 2, accuracy="loose"), 1e-3, {"iterations": 20}, 1e-2),
     ),
     # the pivot slides by inches, and the block overturns or leaves the problem
     "contacts that are recycled let the pivot go": ("rapier", {}, 1e-3, {"recycling": True}, 1.0),
@@ -104,8 +96,7 @@ TRAPS = {
         *({**SMALL_BALLS, "base_depth": 1.0}, 3e-2),
     ),
     "in metres the corners of a large block are rounded by its size": (
-        *("rapier", of(LARGE, 1.3, 3.0, 2), 1e-3),
-        *({"units": None, "centred": False}, 1e-2),
+        *("rapier", of(LARGE, 1.3, 3.0, 2), 1e-3, {"units": None, "centred": False}, 1e-2),
     ),
 }
 """Engine, scene, by how much at most its peak is missed, what is set otherwise, and by how much at

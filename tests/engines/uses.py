@@ -34,6 +34,7 @@ def held_frames(engine, preset):
     return [frame for frame, posed in asked if not declared.use(posed).lacking]
 
 
+BOTH_FRAMES = [use for use in TUNED if set(FRAMES) <= set(held_frames(*use))]
 TUNED_IN_FRAMES = [(*use, frame) for use in TUNED for frame in held_frames(*use)]
 MIRRORED = [pytest.param(*use, marks=held_to(Miss.MIRROR, *use)) for use in USES]
 
@@ -43,25 +44,14 @@ every_fixed_use = pytest.mark.parametrize("engine", FIXED)
 every_landing_use = pytest.mark.parametrize(("engine", "preset"), LANDING)
 
 
-def in_both_frames(uses):
-    """Return the uses whose base can also move in the world."""
-    return [use for use in uses if set(FRAMES) <= set(held_frames(*use))]
-
-
-def noise(engine, step):
-    """Return the part of an impact's velocity, some p H/10, that is a rounding of a block's place.
-
-    Over a step of p dt such a rounding is a velocity.
-    """
-    return ROUNDINGS * HERE[engine].precision.value / (0.1 * step)
-
-
 def speed_band(engine):
     """Return within what landing steps meet a closed form for the velocity of an impact.
 
-    It is extrapolated over three rows by up to two steps, which adds up to 17 times their errors.
+    It is extrapolated over three rows by up to two steps, which adds up to 17 times their errors. A
+    rounding of a block's place over a step, p dt = 5e-3, is a part of it, which is some p H/10.
     """
-    return max(band(engine), 17.0 * max(noise(engine, 5e-3), NUISANCE.get(engine, 0.0)))
+    noise = ROUNDINGS * HERE[engine].precision.value / (0.1 * 5e-3)
+    return max(band(engine), 17.0 * max(noise, NUISANCE.get(engine, 0.0)))
 
 
 def band(engine):
