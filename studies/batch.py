@@ -123,8 +123,10 @@ def _off(mine: FloatArray, right: FloatArray, whose: str) -> Row:
 def finding(tables: Tables) -> str:
     """Say how many cases each way gives at a median error of 1 %, and what repeats."""
     best = tables["rates"].query("target == 0.01").sort_values("cases_per_s")
-    best = best.drop_duplicates("backend", keep="last").set_index("backend")["cases_per_s"]
-    rates = listed(f"{NAMES[name]} {rate:,.0f}" for name, rate in best.items())
+    best = best.drop_duplicates("backend", keep="last")
+    rates = listed(
+        f"{NAMES[line['backend']]} {line['cases_per_s']:,.0f}" for line in best.to_dict("records")
+    )
     said = f"At a median error below 1 % these solve so many cases a second: {rates}."
     for line in tables["spread"].query("runs > 1").to_dict("records"):
         said += f" In {line['runs']} equal runs {line['bits_differ']:.0f} of {line['worlds']}"
