@@ -7,9 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
+from reprlib import repr as shown
 from typing import Literal
 
-from analytic.accelerograms import is_number, lines_of, shown
+from analytic.accelerograms import is_number, lines_of
 from analytic.block import RigidBlock
 from analytic.slide import SlidingBlock
 from studies.cases.refusal import BadInputError
