@@ -222,7 +222,7 @@ class Standing:
     load
         Mass of a frame's beam over the mass of all columns.
     offset
-        Distance [m] of a block's mass to the right of the middle; only models take it.
+        Distance [m] of a block's mass to the right of the middle.
     """
 
     scene: Annotated[SceneName, arguments.one_of(SceneName)] = "block"
