@@ -146,7 +146,7 @@ def finding(tables: Tables) -> str:
     return (
         f"The exact block with two fitted numbers predicts {block} % of what two rocks did in "
         f"{lines['tests'].max()} tests, two thresholds of PGA and PGV {rule} %, and the authors' "
-        f"model {authors} %: {'chance may do that' if p > 0.05 else 'they differ'} (p {p:.2g})."
+        f"model {authors} %: {'no difference beyond chance' if p > 0.05 else 'they differ'} (p {p:.2g})."
     )
 
 
