@@ -160,7 +160,10 @@ All take equal steps on a base at rest. MJX is not asked: on an H100, 1024 world
 end within 160 s. Ten minutes without Warp; an hour with it on a CPU.""",
     options=Options,
     quick="64 cases, and one step of each preset.",
-    captions={"batch": "A line for each preset and way to step, from coarse steps to fine."},
+    captions={
+        "batch": "A line for each preset and way to step, from coarse steps to fine; hollow: other"
+        " numbers of worlds."
+    },
     alone=True,
     **stages(jobs, measure, tabulate, finding, shown, figures),
 )
