@@ -118,10 +118,7 @@ def read(path: Path, units: str | None, dt: float | None, insist: bool = True) -
 
 
 def _split(lines: Lines) -> tuple[Lines, Lines, tuple[float, float | None] | None]:
-    """Return header with remarks, rows, and the step and count that an AT2 or ASC header says.
-
-    One that says the step alone must be closed by "*** End Data ***": the file is whole then.
-    """
+    """Return header, rows, and the step and count it says; a step alone needs "End Data" below."""
     asc = any(line.startswith("SAMPLING_INTERVAL_S:") for _, line in lines[:100])
     end, said = 0, {"count": dict[float, None](), "dt": dict[float, None]()}
     for i, (at, line) in enumerate(lines[:100], start=1):
@@ -220,11 +217,7 @@ def _uneven(times: FloatArray, lines: Sequence[int]) -> str:
 def _sampled(
     dt: float, samples: ArrayLike, header: Lines, given: str | None, count: float | None = None
 ) -> Sampled:
-    """Return the samples in m/s2, of the unit that a header states, or else a user gives.
-
-    What overflows is infinite. ValueError if the unit is stated nowhere or twice or is not of
-    acceleration, or there are too many samples, or not as many as a header says.
-    """
+    """Return samples in m/s2, of the stated unit or the given one; what overflows is infinite."""
     stated = {unit: at for at, line in header for unit in _units_in(line)}
     for unit, at in stated.items():
         if unit not in UNITS:
@@ -260,10 +253,7 @@ def _check_quantity(header: Lines) -> None:
 
 
 def lines_of(path: Path) -> list[str]:
-    """Return the lines of a text file, without their ends.
-
-    ValueError if it is no ordinary file, too large for a record, or holds bytes that are no text.
-    """
+    """Return the lines of a text file; ValueError if it is none, or too large for a record."""
     kinds = {"d": "a folder", "p": "a named pipe", "s": "a socket"}
     try:
         found = path.stat()

@@ -20,11 +20,7 @@ class Side(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Upright:
-    """A homogeneous rectangular block that stands on its base, and what its sizes alone say.
-
-    B, H [m] and g [m/s2] must be positive, and floating point must hold their squares and that of
-    alpha; a ValueError says what is not.
-    """
+    """What the sizes B, H [m] and g [m/s2] of a block say; ValueError if one is out of range."""
 
     width: float
     height: float

@@ -32,13 +32,10 @@ def solve_cases(
     take: Callable[..., None],
     above: float = 0.0,
 ) -> list[NDArray[Any]]:
-    """Solve the cases of `peak_ratios`, which need no more memory than they and the outputs do.
+    """Solve the cases of `peak_ratios` part by part; return arrays of the types in `outputs`.
 
-    Take is given of each part the cases (5, n): alpha, amplitude, omega/p, half cycles, eta;
-    the constants (5, n) of `Model.constants`; outcome, peak, steps, impacts, events, time, y and v
-    as in `End`, but for the peak of both sides (8, n); and an array of each type
-    in `outputs` to write to. Whole, these are returned in the broadcast shape. Peaks are looked for
-    above a rotation.
+    `take` writes them, given cases (5, n): alpha, amplitude, omega/p, half cycles, eta; constants
+    (5, n) of `Model.constants`; ends (8, n), as in `End`, but for the peak of both sides.
     """
     declared, eta = find_model(model), 0.0 if restitution is None else restitution
     columns = np.broadcast_arrays(*given, eta)

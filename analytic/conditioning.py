@@ -32,11 +32,7 @@ Solve = Callable[[float, float], tuple[Any, Any]]
 
 
 class Conditioning(NamedTuple):
-    """Condition numbers of a peak; nan where the block does not rock and survive.
-
-    amplitude is d ln(peak)/d ln(a_p), a_p being the scale of the ground motion; restitution is d
-    ln(peak)/d ln(eta).
-    """
+    """d ln(peak)/d ln(a_p) and d ln(peak)/d ln(eta), nan where no peak is survived."""
 
     amplitude: FloatArray
     restitution: FloatArray
@@ -108,11 +104,7 @@ def sensitivity(
 def scaled(
     block: Rocker, motion: Motion, model: str | Model = "exact", start: tuple[float, float] = REST
 ) -> Callable[[float, float], tuple[float, Outcome]]:
-    """Return what solves one response with its motion and eta multiplied.
-
-    Given both factors, it returns the peak over alpha and the outcome; eta stays at most 1.
-    It writes nothing else down and may be called from several threads.
-    """
+    """Return what solves one response, given factors of its motion and of eta: peak and outcome."""
     posed = pose(block, motion, model, start)
     moving = posed.then_still(posed.segments[-1, 1])
     steps, exactly = posed.steps, accuracy(TOLERANCE)

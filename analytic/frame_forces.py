@@ -39,12 +39,7 @@ TINY = 1e-12
 
 
 class Demands(NamedTuple):
-    """What a response of a frame asks for.
-
-    base, top : largest abs(horizontal)/vertical force, or impulse, of any column's foot or head.
-    pressing : least vertical force of any of these contacts, over the weight that it carries at
-    rest. spacing : least distance [m] of the columns with which the beam does not tip.
-    """
+    """Largest horizontal/vertical of feet and heads, least vertical/weight, least spacing [m]."""
 
     base: float
     top: float
@@ -97,10 +92,7 @@ def frame_demands(
 
 
 class Push(NamedTuple):
-    """Forces over m_c g, or impulses over a common one, of a column and of its share of the beam.
-
-    side is that of the rotation, z = alpha - abs(theta) [rad]; across is along the base.
-    """
+    """Forces over m_c g, or impulses, of a column and its share of the beam; z as above."""
 
     side: FloatArray
     z: FloatArray

@@ -57,10 +57,7 @@ class Model:
         return right, left
 
     def law(self, alpha: float, eta: float, faster: float = 1.0) -> Law:
-        """Return the model at a slenderness alpha [rad] and velocity ratio eta.
-
-        A side of a block may have a p that is larger than the block's by a factor (`faster`).
-        """
+        """Return the model at alpha [rad] and eta, of a side that is `faster` than the block."""
         k, saddle, factor, _, onset = map(float, self.constants(np.array(alpha)))
         return Law(self.linear, faster * k, saddle, factor, alpha, onset, eta)
 

@@ -87,7 +87,7 @@ def simulate(
     ValueError
         If the model is unknown, or linear and the body none of its own; if the duration is shorter
         than the motion, the times are not increasing or the tolerance is out of range, or the start
-        is none (`analytic.start.folded` says which).
+        is none (`analytic.checks.check_tilt` says which).
 
     Notes
     -----
@@ -128,10 +128,7 @@ def simulate(
 def as_response(
     block: Rocker, posed: Posed, solve: Callable[[Notes], Ended], recorded: bool, watched: bool
 ) -> Response:
-    """Run a march, given where to note, and turn what it notes into a response in seconds.
-
-    It has a history if `recorded`, and limits of the contact forces if `watched`.
-    """
+    """Run a march, given where to note, and turn what it notes into a response in seconds."""
     if not np.all(np.isfinite(posed.segments)):
         return Response.failure(FAILURES[BROKEN].message, reason=FAILURES[BROKEN].reason)
     sampled, log = posed.times, np.empty((1024, 4))

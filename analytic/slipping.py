@@ -27,11 +27,10 @@ LAST_DIGIT = float(np.finfo(np.float64).eps)
 
 
 class Leg(NamedTuple):
-    """A part of a slip, or of a stick, on one segment of the motion.
+    """A part of a slip or a stick, on one segment, from a place x [m] at a rate v [m/s].
 
-    It starts at the time `begin` [s] from the place x [m] at the rate v [m/s], both relative to the
-    base; side is the sign of the rate, 0 while the block sticks. phase, offset [m/s2] are those of
-    the motion at the begin; brake is mu g [m/s2].
+    side is the sign of the rate, 0 while it sticks; phase and offset are those at the begin; brake
+    is mu g.
     """
 
     begin: float
@@ -97,11 +96,7 @@ def slid(
     until: float | None,
     sampled: FloatArray | None,
 ) -> Response:
-    """Return the response of a block that starts from a place [m] at a rate [m/s].
-
-    It is followed to a time [s] or, without one, until the motion has ended and the block stands.
-    The last slip is as far as it got.
-    """
+    """Return the response from a place [m] and rate [m/s], to a time [s] or, for None, to rest."""
     began = time.perf_counter()
     x, v = start_of(start, PLACE)
     legs: list[Leg] = []

@@ -23,10 +23,9 @@ LEAST_LOSS = 0.02
 
 
 class Posed(NamedTuple):
-    """A response to be solved.
+    """A response to be solved: laws and start as the kernels take them, segments (m, 7) or (m, 14).
 
-    laws and start are as the kernels take them; segments (m, 7) are the motion's, in units of 1/p
-    and g, and not finite where they overflow; until [1/p] is the end of what is followed, and
+    They are in 1/p and g, not finite where they overflow; what is followed ends with until [1/p];
     times [s] are those of the history.
     """
 
@@ -92,11 +91,7 @@ def strongest(motion: Motion) -> float:
 def folded(
     block: Rocker, laws: Laws, motion: Motion, start: tuple[float, float], times: FloatArray
 ) -> Start:
-    """Return a start folded to one side, in units of 1/p; the rest is for the errors.
-
-    ValueError unless they are two finite numbers, `checks.check_tilt` allows them and, off rest,
-    no time is before the start.
-    """
+    """Return a start folded to one side; ValueError if it is none, or a time is before it."""
     theta, rate = start_of(start, least=LEAST_TILT * block.alpha)
     check_tilt(theta, rate, law_of(laws, theta).saddle, lambda: strongest(motion) == 0.0)
     leaning = theta if theta != 0.0 else rate

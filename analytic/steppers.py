@@ -161,11 +161,7 @@ def take_step(law: Law, segment: FloatArray, begin: State, h: float, rk4: bool) 
 
 
 def average_step(law: Law, segment: FloatArray, begin: State, h: float) -> Cubic:
-    """Advance by one step of constant average acceleration.
-
-    The end's rotation is found by Newton's method with the tangent of the step's begin (modified
-    Newton-Raphson).
-    """
+    """Advance by one step of constant average acceleration, by modified Newton-Raphson."""
     side, tau, _, y, v = begin
     a0, a1 = shaking(segment, tau), shaking(segment, tau + h)
     before = acceleration(law, side, a0, y)
@@ -226,10 +222,7 @@ UNDECIDED = -1
 
 
 def verdict(law: Law, path: Cubic, free: bool) -> int:
-    """Return whether a block is ROCKED or OVERTURNED by the end of a step, or UNDECIDED.
-
-    A free one, for which the ground does nothing more, is at its turning point or past the saddle.
-    """
+    """Return whether a block is ROCKED or OVERTURNED or UNDECIDED; `free` if no ground moves it."""
     y, v = path.end, path.rate
     if y >= LYING or (free and y > law.saddle and v >= 0.0):
         return OVERTURNED
@@ -239,10 +232,7 @@ def verdict(law: Law, path: Cubic, free: bool) -> int:
 def next_side(
     laws: Laws, segments: FloatArray, j: int, tau: float, side: float, v: float, tolerance: float
 ) -> tuple[float, float]:
-    """Return what `after_impact` does, but 0 for what stays below the tolerance, too.
-
-    It cannot be told from rest.
-    """
+    """Return what `after_impact` does, but 0 for what stays below the tolerance, as at rest."""
     onward, wait = after_impact(laws, segments, j, tau, side, v)
     pull = -acceleration(law_of(laws, side), side, ground(segments, j, tau), 0.0)
     unseen = wait < math.inf and 0.5 * v * v < tolerance * pull
@@ -252,10 +242,7 @@ def next_side(
 def tread(
     laws: Laws, moving: FloatArray, start: Start, followed: bool, notes: Notes, solver: Solver
 ) -> Ended:
-    """Follow one response with a fixed step; arguments as for `excursions.march`.
-
-    It ends with the last segment if it is to be `followed`, else when the peak is decided.
-    """
+    """Follow one response with a fixed step as `excursions.march`, to the end if `followed`."""
     ended = moving[-1][0]
     last = moving[-1][1] if followed else ended
     side, y, v = start

@@ -52,9 +52,8 @@ def difference(x: float, u: float, first: int) -> float:
 def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple[float, float]:
     """Return rotation and rate, h > 0 after a state, of y'' = -k^2 [saddle - y + side factor a].
 
-    The paper's equations (6)-(10) and (17)-(21), corrected (EQUATIONS.md, "From (1) and (2)"; on a
-    straight segment EQUATIONS.md, "A record"), with the terms grouped so that short steps lose no
-    digits. With a lead of 3, after a smooth uplift, y'' starts from zero.
+    The paper's equations (6)-(10) and (17)-(21), corrected (EQUATIONS.md, "From (1) and (2)", "A
+    record"), with the terms grouped so that short steps lose no digits.
     """
     start, _, amplitude, omega, phase, offset, slope = segment
     side, tau, lead, y, v = begin
@@ -63,7 +62,7 @@ def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple
     sine, cosine = math.sin(psi), math.cos(psi)
     D = law.saddle + force * (offset + slope * (tau - start) + amplitude * sine)
     if lead == 3:
-        D = 0.0
+        D = 0.0  # a smooth uplift: y starts from zero to its second derivative
     rate = force * slope
     C = force * amplitude * k * k / (k * k + omega * omega)
     u, x = k * h, omega * h
@@ -77,11 +76,7 @@ def linear_state(law: Law, segment: FloatArray, begin: State, h: float) -> tuple
 
 
 def work_to(law: Law, y: float) -> float:
-    """Return half the squared velocity [p^2] that a free block loses between rotations 0 and y.
-
-    The integral of -y'' without a ground acceleration: k^2 y (2c - y)/2 of a linear model, and
-    k^2 [cos(alpha - y) - cos(alpha)] of the exact one, as a product.
-    """
+    """Return the work [p^2] from 0 to y: k^2 y (2c - y)/2, or k^2 [cos(alpha - y) - cos(alpha)]."""
     if law.linear:
         return 0.5 * law.k * law.k * y * (2.0 * law.saddle - y)
     return 2.0 * law.k * law.k * math.sin(law.alpha - 0.5 * y) * math.sin(0.5 * y)
@@ -105,11 +100,7 @@ def turning_rotation(law: Law, work: float) -> float:
 
 
 def free_peaks(laws: Laws, side: float, y: float, v: float) -> tuple[float, float]:
-    """Return the largest rotations still to come of a free block, right and left; inf: a fall.
-
-    They are those of its next two swings: from a swing to the next one on the same side no impact
-    adds energy. A block that moves inward passes an impact before.
-    """
+    """Return a free block's peaks, of its next two swings, on its right and left; inf: a fall."""
     law = law_of(laws, side)
     work = 0.5 * v * v + work_to(law, y)
     if is_lost(law, y, v):

@@ -79,11 +79,7 @@ Python, where an interruption may end the call; compiled code does not see that,
 
 
 class End(NamedTuple):
-    """How a march ended; `events` may exceed the capacity of the log.
-
-    right and left are the largest rotations on either side.
-    time, y and v are those of the last state, before any free rocking that is not followed.
-    """
+    """How a march ended: largest rotations, last state; `events` may exceed the room of the log."""
 
     outcome: int
     right: float
@@ -97,10 +93,7 @@ class End(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A step: what it ended with, its length h, the part x in (0, 1] of it that was gone.
-
-    Then time, rotation and rate there, and the largest rotation so far.
-    """
+    """A step: what ended it, its length, the part x in (0, 1] gone, the state there, the peak."""
 
     kind: int
     h: float
@@ -128,10 +121,7 @@ def expand(
 
 
 def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: FloatArray) -> float:
-    """Return where sum d[i] x^i first equals `level` in (0, 1]; 2 if nowhere.
-
-    A lead, whose root at x = 0 is left out, is for a level of 0 alone.
-    """
+    """Return where sum d[i] x^i first equals `level` in (0, 1], or 2; a lead is for level 0."""
     q = work[0]
     degree = order - lead
     q[0] = d[lead] - level
@@ -159,9 +149,7 @@ def polish(law: Law, segment: FloatArray, begin: State, h: float) -> float:
 def leap(law: Law, segment: FloatArray, begin: State, peak: float) -> Step:
     """Step as `take_step`, of a linear model under a sine, by the closed form; no peak is sought.
 
-    Bounds of y'' in each half cycle say how far ahead there is no impact and no fall; where the
-    ground lifts a block that moves up, there is none until it ceases to. Near either these steps
-    converge to it quadratically.
+    It goes as far as bounds of y'' exclude an impact and a fall, and so converges to either.
     """
     start, end, amplitude, omega, phase, _, _ = segment
     left, square, push = end - begin.tau, law.k * law.k, law.factor * abs(amplitude)
@@ -197,11 +185,7 @@ def leap(law: Law, segment: FloatArray, begin: State, peak: float) -> Step:
 def take_step(
     law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, peak: float, work: FloatArray
 ) -> Step:
-    """Step from a state, no further than to an impact, a fall, or the end of a segment.
-
-    Leaves the series of y, the forcing, sin(z) and cos(z) in work[:4], and that of y on [0, 1] in
-    work[4].
-    """
+    """Step to an impact, a fall or the end of a segment at most; `work` then holds its series."""
     series, d, spare = work[0], work[4], work[5:]
     order, lead, end = accuracy.order, begin.lead, segment[1]
     h = expand(law, accuracy, segment, begin, work)
@@ -274,12 +258,10 @@ def march(
     notes: Notes,
     work: FloatArray,
 ) -> Ended:
-    """Follow one response, to the end of the last segment, on which nothing moves.
+    """Follow one response to the end of the last segment, on which nothing moves; then by energy.
 
-    Outcome and peak of what comes after follow from energy. The accuracy is that of the exact
-    model; for a linear one the order is that of the series that brackets events, or 0 where nobody
-    asks for the peak, or for more, under a pulse. The peak is looked for above a rotation [rad].
-    work is a `workspace`.
+    The order of the accuracy is 0 where nobody asks for the peak of a linear model under a pulse.
+    Peaks are looked for above a rotation [rad]; work is a `workspace`.
     """
     last, limits = moving[-1][1], notes.limits
     side, y, v = start

@@ -30,12 +30,7 @@ REFINED = 1e-14
 def forces(
     law: Law, side: float, a: float, y: float, v: float, weight: float = 1.0
 ) -> tuple[float, float]:
-    """Return (normal, horizontal) contact force over weight of the exact model.
-
-    V and U of EQUATIONS.md, "The rocking frame", with the lever R of a block, R p^2 = 3g/4: from
-    the acceleration of the centre of mass, which turns with the diagonal at z = alpha - y from the
-    vertical.
-    """
+    """Return (normal, horizontal) force over weight: V, U of EQUATIONS.md where R p^2 = 3g/4."""
     z = law.alpha - y
     rate = acceleration(law, side, a, y, weight)
     horizontal = a + 0.75 * side * (v * v * math.sin(z) + rate * math.cos(z))
@@ -130,8 +125,7 @@ def watch_part(limits: FloatArray, order: int, h: float, x: float, work: FloatAr
 def watch_ratio(limits: FloatArray, degree: int, x: float, work: FloatArray) -> None:
     """Watch forces whose series, of a step on [0, 1], are in work[5] and work[6].
 
-    The least normal force N is a minimum of its polynomial. The friction is the largest ratio mu
-    of abs(T) to N: T - mu N has no positive maximum, and each one there is gives a better mu
+    At the largest ratio mu, abs(T) - mu N has no positive maximum; else one gives a better mu
     (Dinkelbach 1967).
     """
     normal, tangential, excess, spare = work[5], work[6], work[7], work[8:]

@@ -32,11 +32,9 @@ _known = set[Callable[..., Any]]()
 
 
 class Kernel(Generic[Given, Answer]):
-    """A function in both forms.
+    """A function in both forms, kept with other kernels of a package (`sources`).
 
-    Of arrays that it is given it may change those in named tuples alone: Python works on lists in
-    place of all others. What it calls makes no array, and so counts no references to any, unless it
-    is said to (`arrays`); it is kept with other kernels of a package (`sources`).
+    It may change arrays in named tuples alone, and makes none unless it is said to (`arrays`).
     """
 
     tell: ClassVar[Callable[[str], None] | None] = None
@@ -85,11 +83,7 @@ def compile_all() -> None:
 def compiled(
     function: Callable[Given, Answer], folder: Path | None, arrays: bool = False
 ) -> Callable[Given, Answer]:
-    """Return a function compiled with all that it calls, kept in a folder if there is one.
-
-    Other threads of Python run while it does. No operation is merged with another: whether it is
-    would depend on what the compiler inlines, and the last digit on which process compiled.
-    """
+    """Return a function compiled with all that it calls; no operations merge: bits are equal."""
     import numba
 
     if Kernel.tell is not None and not holds(folder, function):

@@ -45,11 +45,7 @@ def are_compiled(sources: Path) -> bool:
 
 @cache
 def kept_in(sources: Path) -> Path | None:
-    """Return where the compiled kernels of a package are kept; None if no place can be written.
-
-    The folder is named by what all modules of the package say: numba sees a change of a kernel's
-    own module, not of a function that it calls in another one.
-    """
+    """Return where a package's kernels are kept, named by all of its modules; None if nowhere."""
     digest = hashlib.sha256(Path(__file__).read_bytes())
     for path in sorted(sources.rglob("*.py")):
         digest.update(f"{path.relative_to(sources)}\0".encode() + path.read_bytes() + b"\0")

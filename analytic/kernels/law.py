@@ -34,11 +34,9 @@ UPLIFT, IMPACT, RESTED = 0.0, 1.0, 2.0
 
 
 class Law(NamedTuple):
-    """A model of a block on one of its sides.
+    """A model of a block on one of its sides, named as in `analytic.models`; factor is q.
 
-    linear, k, saddle and factor are those of `analytic.models`, factor being q; alpha is the
-    slenderness [rad], onset the acceleration [g] that lifts the block onto this side, eta the
-    velocity ratio at the impact with which it leaves it.
+    The onset [g] lifts the block onto this side; eta is the ratio of the impact that leaves it.
     """
 
     linear: bool
@@ -60,11 +58,7 @@ def law_of(laws: Laws, side: float) -> Law:
 
 
 class Start(NamedTuple):
-    """The side that a block is on at time zero, y = s theta, and its rate.
-
-    The side is 0 at rest. Upright but turning, a block is on the side that it turns to; there is
-    no impact.
-    """
+    """The side that a block is on, or turns to from upright, 0 at rest; y = s theta; its rate."""
 
     side: float
     y: float
@@ -76,11 +70,7 @@ UPRIGHT = Start(0.0, 0.0, 0.0)
 
 
 class State(NamedTuple):
-    """Where a block is: its side, +1 or -1, the time, rotation y = s theta and its rate.
-
-    lead is the power of time with which the rotation grows from there: 1 out of an impact, 2 or 3
-    out of an uplift (`rest.next_uplift`), 0 where it does not start from zero.
-    """
+    """Where a block is; y grows as t^lead: 1 out of an impact, 2 or 3 out of an uplift, else 0."""
 
     side: float
     tau: float
@@ -90,11 +80,9 @@ class State(NamedTuple):
 
 
 class Notes(NamedTuple):
-    """What to write down on the way; each array may be empty.
+    """What to write down: theta and rate (2, n) at times (n,), events, limits; each may be empty.
 
-    times (n,) and samples (2, n): where to sample theta and its rate, and the samples. log
-    (capacity, 4): kind of the event, time, velocity before, velocity after. limits (4,): the
-    contact forces, as in `analytic.kernels.forces`.
+    A row of the log (capacity, 4) is an event's kind, time, and velocities before and after.
     """
 
     times: FloatArray

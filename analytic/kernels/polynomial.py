@@ -108,9 +108,8 @@ def halve(b: FloatArray, degree: int, right: FloatArray) -> None:
 def bracketed_root(a: FloatArray, degree: int, low: float, high: float, rising: bool) -> float:
     """Return the only root of `a` in [low, high], by Newton's method kept in its bracket.
 
-    There `a` has other signs at both ends, of which it is positive at `high` if it is `rising`.
-    It begins where the chord between the two ends is zero, but in the middle where that is at an
-    end: another root may be there, on the border of the next interval.
+    `a` is positive at `high` if it is `rising`. It begins where the chord is zero, but in the
+    middle where that is at an end: another root may be there.
     """
     first, last = value(a, degree, low) if low > 0.0 else a[0], value(a, degree, high)
     x = low + (high - low) * (first / (first - last)) if first != last else low
@@ -148,10 +147,7 @@ def only_root(a: FloatArray, degree: int, start: float) -> float:
 
 
 def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> float:
-    """Return the first root of `a` in (start, 1], or 2 when there is none.
-
-    A root within SAME_ROOT of the start is not found again; pool is spare, as is `work` elsewhere.
-    """
+    """Return the first root of `a` beyond SAME_ROOT of the start, up to 1, or 2; pool is spare."""
     if trend(a, degree, 0) != 0:
         return only_root(a, degree, start)
     to_bernstein(a, degree, pool[0])
@@ -189,10 +185,7 @@ def next_root(a: FloatArray, degree: int, start: float, pool: FloatArray) -> flo
 def highest(
     d: FloatArray, order: int, lead: int, end: float, above: float, work: FloatArray
 ) -> tuple[float, float]:
-    """Return the maximum of sum d[i] x^i on [0, end] and where it is, if it exceeds `above`.
-
-    Else `above` itself, and -1.
-    """
+    """Return the maximum of sum d[i] x^i on [0, end] and where; `above`, -1 if it is no higher."""
     bound = d[0]
     for i in range(1, order + 1):
         bound += max(d[i], 0.0)

@@ -73,10 +73,7 @@ def acceleration(law: Law, side: float, a: float, y: float, weight: float = 1.0)
 
 
 def sine_uplift(segment: FloatArray, tau: float, laws: Laws) -> tuple[float, bool]:
-    """Return when abs(amplitude sin) first exceeds the onset from tau on, and whether smoothly.
-
-    The block lifts onto its left side in one half cycle, and onto its right one in the next.
-    """
+    """Return when abs(amplitude sin) exceeds an onset from tau on, and whether smoothly."""
     start, _, amplitude, omega, phase, _, _ = segment
     angle = omega * (tau - start) + phase
     begun = math.floor(angle / math.pi)
@@ -96,9 +93,8 @@ def sine_uplift(segment: FloatArray, tau: float, laws: Laws) -> tuple[float, boo
 def ramp_uplift(segment: FloatArray, tau: float, laws: Laws) -> tuple[float, bool]:
     """Return when abs(offset + slope t) first exceeds the onset from tau on, whether smoothly.
 
-    Two excesses count as rounding: one of a part EQUAL of the onset or less, and one that lasts for
-    a part MOMENT of the segment or less. The latter falls at the segment's begin, or rises at its
-    end, where the next segment tells. Of two onsets, the ground counts from midway between them.
+    An excess of a part EQUAL of the onset, or for a part MOMENT of the segment, is rounding. Of two
+    onsets, the ground counts from midway between them.
     """
     start, end, _, _, _, offset, rate = segment
     onset = 0.5 * (laws[1].onset + laws[0].onset)
@@ -123,11 +119,7 @@ def safe_time(gap: float, away: float, most: float) -> float:
 
 
 def heavy_uplift(segment: FloatArray, tau: float, side: float, onset: float) -> tuple[float, bool]:
-    """Return what `ramp_uplift` does, onto one side, where the onset grows with the weight.
-
-    The distance to the onset, whose second derivative is bounded, is followed in steps in which it
-    cannot vanish; they converge to where it does quadratically.
-    """
+    """Return what `ramp_uplift` does where the onset grows with the weight, step by safe step."""
     start, end, amplitude, omega = segment[:4]
     most = abs(amplitude) * omega * omega + onset * abs(segment[9]) * segment[10] * segment[10]
     moment, t = MOMENT * (end - start), tau
@@ -146,11 +138,7 @@ def heavy_uplift(segment: FloatArray, tau: float, side: float, onset: float) -> 
 def next_uplift(
     segments: FloatArray, j: int, tau: float, laws: Laws
 ) -> tuple[int, float, float, int]:
-    """Find the next uplift of a block at rest, where abs(a) first exceeds the onset of a side.
-
-    Returns its segment, time, side, and lead: 3 where the ground passes through the onset, 2 where
-    it is beyond the onset at once. A block that stays at rest has the time inf and the side 0.
-    """
+    """Find the next uplift: segment, time (inf if none), side, and lead, 3 if smooth, else 2."""
     for i in range(j, len(segments)):
         begin = max(tau, segments[i][0])
         if len(segments[i]) > 7:
@@ -168,11 +156,7 @@ def next_uplift(
 
 
 def time_to_rest(laws: Laws, side: float, v: float, a: float, weight: float = 1.0) -> float:
-    """Return how long [1/p] a block leaving the base goes on to rock; inf if it does not rest.
-
-    The excursions last 2 v/r with the restoring accelerations r of the two sides in turn, and
-    each impact multiplies the velocity by eta: a geometric series.
-    """
+    """Return how long [1/p] a block leaving the base rocks, by a geometric series; inf: no rest."""
     this, other = law_of(laws, side), law_of(laws, -side)
     here = -acceleration(this, side, a, 0.0, weight)
     there = -acceleration(other, -side, a, 0.0, weight)
@@ -188,11 +172,10 @@ def time_to_rest(laws: Laws, side: float, v: float, a: float, weight: float = 1.
 def after_impact(
     laws: Laws, segments: FloatArray, j: int, tau: float, side: float, v: float
 ) -> tuple[float, float]:
-    """Return the side of a block that leaves its base at v after an impact, and `time_to_rest`.
+    """Return the side of a block that leaves its base at v, 0 where it rests, and `time_to_rest`.
 
-    The side is 0 where it rests: a train of impacts is summed if it is shorter than ZENO, and the
-    restoring accelerations change by less than a part ZENO in it; the ground moves on as on
-    segment j.
+    A train of impacts is summed if it is shorter than ZENO, and the restoring accelerations change
+    by less than a part ZENO in it.
     """
     now, heavy = ground(segments, j, tau), weight(segments, j, tau)
     wait = time_to_rest(laws, side, v, now, heavy)

@@ -28,9 +28,8 @@ class Accuracy(NamedTuple):
 def accuracy(tolerance: float) -> Accuracy:
     """Return the degree that suits a tolerance, at most ORDER.
 
-    Where the series of a step converges by e^-2 a term, the cost of a solution to a tolerance is
-    least near the degree 1 - ln(tolerance)/2 (Jorba and Zou 2005, section 3.1); two more save
-    steps, which events make dearer than series.
+    The cost is least near 1 - ln(tolerance)/2 (Jorba and Zou 2005, section 3.1); two more degrees
+    save steps, which events make dearer than series.
     """
     order = math.ceil(3.0 - 0.5 * math.log(tolerance))
     return Accuracy(min(max(order, LEAST_ORDER), ORDER), tolerance)
@@ -57,10 +56,7 @@ def expand_weight(segment: FloatArray, tau: float, order: int, weight: FloatArra
 
 
 def expand_exact(law: Law, order: int, work: FloatArray, heavy: bool) -> None:
-    """Extend the series of y by the exact equation, y'' = -k^2 [w sin z + f cos z].
-
-    The weight w is 1 unless it changes (`heavy`).
-    """
+    """Extend the series of y by y'' = -k^2 [w sin z + f cos z]; w is 1 unless it is `heavy`."""
     stiffness = law.k * law.k
     y, f, sine, cosine, rate = work[0], work[1], work[2], work[3], work[4]
     sine[0] = math.sin(law.alpha - y[0])
@@ -101,11 +97,7 @@ def logarithm(x: float) -> float:
 
 
 def trusted_step(y: FloatArray, accuracy: Accuracy) -> float:
-    """Return the step [1/p] over which a series is accurate, at most LONGEST_STEP.
-
-    The last two terms are held below the tolerance times the largest of the first four, which for
-    a step out of a rest is the cubic one (after Jorba and Zou 2005, section 3.2).
-    """
+    """Return the step [1/p] over which a series is accurate (Jorba and Zou 2005, section 3.2)."""
     order, tolerance = accuracy
     last, before = logarithm(abs(y[order]) / tolerance), logarithm(abs(y[order - 1]) / tolerance)
     h = 1.0
