@@ -216,16 +216,13 @@ class Box2DWorld(Adapter):
 class Box2DStacks(Box2DWorld):
     """Columns that a beam rests on by a polygon for each side, whose skin says what touches it.
 
-    The free corners above and below come into contact in the steps of an impact, and not before it:
-    where one of them comes early, by a rounding, the impact is split in two, and the peak is 20 %
-    off. Nor does the solver begin with the impulses of the step before: from there it finds
-    columns that part, whose friction and load would hold, too.
+    Free corners meet in the steps of an impact alone: one that is early makes the peak 20 % off.
     """
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         super()._build(scene, dt_s)
         box2d, (*columns, beam) = self._library, self.bodies
-        self.world.warmStarting = False
+        self.world.warmStarting = False  # from there it would find columns that part
         self._skin, (first,) = box2d.b2_polygonRadius, beam.fixtures
         apart = box2d.b2Filter(categoryBits=128, maskBits=64)
         again = box2d.b2PolygonShape(vertices=first.shape.vertices)

@@ -167,10 +167,7 @@ class Preset:
         return True
 
     def ordinary_step(self, accuracy: str = "standard") -> float:
-        """Return the ordinary p dt; nan where the library has a step of its own in seconds.
-
-        Between two looks at the block, where the engine chooses its own steps.
-        """
+        """Return the ordinary p dt, or that between two looks; nan where it is in seconds."""
         return self.step if self.stepping is Stepping.FIXED else 1.0 / ACCURACIES[accuracy]
 
 
@@ -254,10 +251,7 @@ class Engine:
         return next(preset for preset in self.presets if preset.name == name)
 
     def use(self, scene: Scene) -> "Use":
-        """Return how it is used for a scene: in the preset that it names, or the best that can be.
-
-        ValueError if there is no such preset, or a setting of the scene is not the engine's.
-        """
+        """Return how it is used for a scene; ValueError if a preset or setting is not its own."""
         presets = self.presets[::-1] if scene.preset is None else (self.preset(scene.preset),)
         lacking = [self._lacks(scene, each) for each in presets]
         best = lacking.index("") if "" in lacking else 0
@@ -311,11 +305,7 @@ UNEVEN = "a block whose mass is not spread evenly"
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """How an engine is used for a scene: all that its declaration says of it, resolved once.
-
-    The scene says where the base moves, the settings are the preset's with the scene's own in their
-    place, dt_s is the ordinary step [s]; lacking is what of the scene the engine cannot do, or "".
-    """
+    """How an engine is used for a scene, resolved once; dt_s is the ordinary step [s]."""
 
     engine: Engine
     preset: Preset

@@ -19,10 +19,7 @@ Settings = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Level:
-    """A value of a factor, by settings of the engine and options of the scene.
-
-    It is tried from some presets; a trap says why it goes wrong without a word, where it does.
-    """
+    """A value of a factor, tried from some presets; a trap says why it silently goes wrong."""
 
     name: str
     settings: Settings
@@ -61,10 +58,7 @@ def factor(
 
 
 def moving_base(*floors: str) -> Factor:
-    """Return the factor of a base that moves in the world, in ways of the setting `floor`.
-
-    The first one is that of the tuned presets; "position" is the base moved by position alone.
-    """
+    """Return the factor of a base that moves, in ways of `floor`, first the tuned presets'."""
     unmoved = "a base without a velocity: friction does not feel it"
     levels = [
         Level(

@@ -173,11 +173,10 @@ def new_solver(newton: Any, model: Any, s: NewtonSettings, width: float) -> Any:
 
 
 class Recorded:
-    """A step of a model, known again by what that is made of, and views of its state.
+    """A step of a model, known again by what that is made of, and single-precision views of it.
 
-    Views are in single precision, a row for each body, then for a plane that moves: force [N] and
-    moment [N m] that act; position [m] and quaternion; velocity [m/s] and angular velocity [rad/s].
-    The last of a joint's coordinates are place [m] and velocity [m/s] of a plane that moves.
+    A row for each body and a moving plane: force [N] and moment [N m]; position [m] and
+    quaternion; velocity [m/s] and angular velocity [rad/s].
     """
 
     def __init__(self, scene: Scene, settings: NewtonSettings, dt_s: float) -> None:

@@ -29,11 +29,7 @@ def fall(scene: Scene, dt_s: float) -> float:
 
 
 def iterations_for(scene: Scene, iterations: int | None, sweeps: float | None) -> int | None:
-    """Return how often a solver goes through the contacts: as it is asked, or None for its own.
-
-    The impulses of the two corners on which a block stands converge the more slowly, the more
-    slender it is: sweeps / sin^2(alpha) iterations, rounded up, serve every block equally well.
-    """
+    """Return a solver's iterations: as asked, or sweeps/sin^2(alpha) for two corners, or None."""
     if iterations is not None or sweeps is None:
         return iterations
     return min(math.ceil(sweeps / math.sin(scene.system.alpha) ** 2), MOST_ITERATIONS)
@@ -51,10 +47,8 @@ MOST_RETURNED = 2.0
 def returned(step: Step, before: float) -> float:
     """Return the part of a pivot's velocity to give back, so that its mean over a step is zero.
 
-    The centripetal acceleration c of a pivot is in proportion to the square of the angular
-    velocity. A pivot that leaves with -c h/2 is back where it was at the end of a step h. It comes
-    into the next step with c h/2, which it got by the turn of the last one (of `before` [s], 0
-    where there was none), all other velocities having been taken in by the contact. Through an
+    By its centripetal acceleration c a pivot that leaves with -c h/2 is back at the end of a step
+    h, and comes into the next with c h/2, by the turn of the last (of `before` [s]). Through an
     impact, and in the first step after it, nothing is given back.
     """
     if not (before and step.side and step.phase in (ContactPhase.SWING, ContactPhase.APPROACH)):
@@ -93,10 +87,7 @@ def imported(library: str) -> Any:
 class Adapter:
     """What worlds have alike: their settings, a base that may move, and what is read back.
 
-    `_build(scene, dt_s)` builds the scene, `_read_back(scene)` says which setting was not taken,
-    and `_script(notes, way)` writes it for somebody who has the library alone, `called` something.
-    `_way` is how a base that moves is moved, "" where it is at rest; `_place` and `_speed` are its
-    own, in units of length.
+    An engine has `_build`, `_read_back` and `_script`; `_way` is how a base is moved, "" at rest.
     """
 
     library: Any  # the name of a library, or what imports it

@@ -90,10 +90,7 @@ class PhysxWorld(Adapter):
         self.bodies = [self._new_body(scene, number) for number in range(len(scene.bodies))]
 
     def _set_library(self) -> tuple[dict[str, Any], ...]:
-        """Set what the library has once for a process; return its settings of scene, body, shape.
-
-        Its functions are told all settings together: what is not given is the default again.
-        """
+        """Set, all together, what the library has once for a process; return what was set."""
         s, unit, physx = self._s, self._unit, self._library.physx
         bounce = None if s.bounce_threshold is None else s.bounce_threshold * unit
         sleep = None if s.sleeping in (None, True) else 0.0

@@ -68,11 +68,7 @@ def _further() -> list[EntryPoint]:
 
 
 def named(place: str) -> str:
-    """Return the name of an engine that no package announces; ValueError if none stands there.
-
-    It stands at "module:ENGINE", a declaration, or "module:build", what builds a world: its engine
-    is then called as its module.
-    """
+    """Return the name of the engine at "module:ENGINE" or "module:build"; ValueError if none."""
     if not re.fullmatch(r"[\w.]+:[\w.]+", place):
         raise ValueError(f"engine is {place!r}; it must be like my_package.mine:ENGINE")
     module = place.partition(":")[0]
@@ -95,10 +91,7 @@ def named(place: str) -> str:
 
 
 def announce(place: str, name_of: Callable[[str], str] = named) -> str:
-    """Make an engine known that no package announces; return its name, if that is not taken.
-
-    name_of is as `named`, for a place whose code must not be loaded in this process.
-    """
+    """Make an engine known that no package announces; return its name, if that is not taken."""
     name = name_of(place)
     if name in ENGINES:
         raise ValueError(f"engine {place!r} is called {name!r}, as another is")
@@ -138,24 +131,12 @@ def loaded(name: str, place: EntryPoint) -> Engine:
 
 
 def core_engines() -> tuple[str, ...]:
-    """Return the names of the engines that the published studies ask by default.
-
-    Examples
-    --------
-    >>> core_engines()
-    ('pybullet', 'mujoco')
-    """
+    """Return the names of the engines that the published studies ask by default."""
     return tuple(name for name, engine in ENGINES.items() if engine.core)
 
 
 def installed_engines() -> tuple[str, ...]:
-    """Return the names of the engines whose libraries are here.
-
-    Examples
-    --------
-    >>> set(installed_engines()) <= set(ENGINES)
-    True
-    """
+    """Return the names of the engines whose libraries are here."""
     return tuple(name for name, engine in ENGINES.items() if engine.installed)
 
 
@@ -175,10 +156,7 @@ class PlainSettings(Settings):
 
 
 def undeclared(name: str, build: Builder, library: str) -> Engine:
-    """Return an engine of which nothing is known but what builds its world, in `PlainSettings`.
-
-    It holds one body, in the frame "base" alone, in equal steps and in ones that land.
-    """
+    """Return an engine known by what builds its world alone, of one body, in `PlainSettings`."""
     fixed = Preset(name="tuned", title="equal steps", settings=PlainSettings(), step=1e-3)
     return Engine(
         name=name,

@@ -49,12 +49,10 @@ class Beginning(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A box, upright where its rotation is zero.
+    """A box, upright where its rotation is zero: sizes [m] along x, z and y, density in kg/m3.
 
-    Its full sizes [m] are along x, z and y, which is out of the plane; its density is in kg/m3. At
-    home its middle is at rest, along the base and above it [m]; at says where that begins. The mass
-    stands to the right of it, at `offset` [m]; `square` is its moment of inertia about the axis y
-    over the mass [m2], None where it is spread evenly.
+    Its middle is at `home` at rest and begins `at`; the mass is `offset` [m] to its right, with a
+    moment of inertia over mass of `square` [m2], None where it is spread evenly.
     """
 
     width: float
@@ -107,10 +105,7 @@ class Contact(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """What stands on what; so many bodies, from the first on, rock as the system's equation says.
-
-    They turn about their lower corners; 0 where nothing rocks.
-    """
+    """What stands on what; the first ones, `rocking`, rock as the system's equation says."""
 
     bodies: tuple[Body, ...]
     contacts: tuple[Contact, ...]
@@ -125,10 +120,7 @@ class Layout(NamedTuple):
         return any(contact.on == body for contact in self.contacts)
 
     def carried(self, contact: Contact) -> float:
-        """Return the mass [kg] that a contact carries: what its lower body's share is of all above.
-
-        A body that rests on others is carried by all of them alike.
-        """
+        """Return the mass [kg] that a contact carries; several below carry a body alike."""
         tops = [top for top in self.contacts if top[:2] == (contact.body, UPPER)]
         shares = [sum(each.on == top.on for each in self.contacts) for top in tops]
         loads = [self.bodies[top.on].mass / n for top, n in zip(tops, shares, strict=True)]
@@ -140,10 +132,7 @@ System = Rocker | SlidingBlock
 
 
 def tilted(width: float, height: float, side: float, theta: float, rate: float) -> Beginning:
-    """Return where the centre of a box is, and how fast, that turns about its corner at a side.
-
-    side is -1 or 1, the corner that stays on the base, or 0 where both do.
-    """
+    """Return where a box's centre is, and how fast, that turns about a corner (-1, 1), or 0."""
     half_width, half_height = 0.5 * side * width, 0.5 * height
     sine, cosine = math.sin(theta), math.cos(theta)
     return Beginning(
@@ -175,11 +164,7 @@ def one_block(system: Upright, density: float, depth: float | None, start: Start
 
 
 def frame(system: RockingFrame, density: float, depth: float | None, start: Start) -> Layout:
-    """Return columns on the base and a beam on their tops, all of them about x = 0.
-
-    The beam moves with the heads of the columns and does not turn (EQUATIONS.md, "The rocking
-    frame").
-    """
+    """Return columns on the base about x = 0, and a beam that moves with their heads."""
     count, apart = system.columns, SPACING * system.height
     homes = [(number - 0.5 * (count - 1)) * apart for number in range(count)]
     columns = [_standing(system, density, depth, start, home) for home in homes]
@@ -220,11 +205,7 @@ LAYOUTS: Mapping[type, Callable[[Any, float, float | None, Start], Layout]] = {
 
 
 def layout_of(system: Any, density: float, depth: float | None, start: Start) -> Layout:
-    """Return the layout of a system of `LAYOUTS`; TypeError if it is of another class.
-
-    density is in kg/m3, depth in m out of the plane (None is the width); start is theta [rad] and
-    theta' [rad/s], and of a box that slides its place [m] and velocity [m/s].
-    """
+    """Return the layout of a system of `LAYOUTS`; TypeError if it is of another class."""
     made = LAYOUTS.get(type(system))
     if made is None:
         known = ", ".join(kind.__name__ for kind in LAYOUTS)
@@ -394,10 +375,8 @@ class Scene:
     def watched(self) -> float:
         """Until when it is observed at least [s].
 
-        No turning point after the first one after the motion is larger where energy falls, which is
-        not so of columns that part. Of one block it is: 8/p more change no outcome of 200 of the
-        paper's cases with the defaults of six engines, two tuned presets and three that land, and
-        no peak by more than 4e-8 of alpha.
+        Where energy falls no later turning point is larger, but of columns that part: 8/p more
+        change no outcome of 200 of the paper's cases, and no peak by more than 4e-8 of alpha.
         """
         if self.duration is not None:
             return self.duration

@@ -38,10 +38,7 @@ def perhaps(value: str, allowed: Sequence[str]) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Allowed:
-    """What a setting may be: a number between bounds, one of some names, or together with others.
-
-    above is a bound that is not allowed itself; least and most are.
-    """
+    """What a setting may be: between bounds, without `above`, one of names, or with others."""
 
     above: float = -math.inf
     least: float = -math.inf
@@ -73,10 +70,7 @@ def setting(default: Any = None, *, names: Sequence[str] = (), **allowed: Any) -
 
 
 def check(settings: Any) -> None:
-    """Raise ValueError unless each of the settings is what its field allows.
-
-    None leaves a setting to the library, but it is none of several names of ours.
-    """
+    """Raise ValueError unless each setting is allowed; None leaves it to the library, if it may."""
     for item in fields(settings):
         allowed, value = item.metadata.get("allowed"), getattr(settings, item.name)
         if hasattr(value, "item"):  # a number of NumPy, which is not written as one of Python is
@@ -108,10 +102,7 @@ def given(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def disagreement(pairs: Mapping[str, tuple[Any, Any]], rounding: float = 2.0**-53) -> str:
-    """Name the first setting that reads back as something else, or return an empty string.
-
-    pairs: name -> what was set, None being left to the library, and what was read.
-    """
+    """Name the first of the pairs (set, None being the library's, and read) that differ, or ""."""
     near = max(1e-9, ROUNDINGS * rounding)
     for name, (wanted, found) in pairs.items():
         if wanted is None or wanted == found:

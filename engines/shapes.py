@@ -23,10 +23,7 @@ def half_size(body: Body) -> Point:
 
 
 def corner_spheres(body: Body, radius: float, *, planar: bool, face: int = LOWER) -> list[Point]:
-    """Return the centres [m] of spheres at the corners of a body's face, those at -x first.
-
-    They are relative to the body's centre: two in the middle plane (planar), or four at the edges.
-    """
+    """Return centres [m] of spheres at a face's corners, at -x first: two if planar, or four."""
     x, y, z = half_size(body)
     depths = (0.0,) if planar else (-y, y)
     return [(side, depth, face * (z - radius)) for side in (-x, x) for depth in depths]
@@ -48,11 +45,7 @@ def hull_points(body: Body) -> list[Point]:
 
 
 def floor_reach(scene: Scene) -> float:
-    """Return half of the length [m] of a base; a block that slides stays on it.
-
-    At most it is as fast as it began, and as the base's velocity ever differs from another: it goes
-    no further in the motion, and after it as friction lets it. What is thrown may go twice as far.
-    """
+    """Return half of the length [m] of a base, on which a block that slides or is thrown stays."""
     farthest = max(abs(body.home[0]) for body in scene.layout.bodies)
     far = FLOOR_HEIGHTS * scene.bodies[0].height + farthest
     if scene.layout.rocking or not scene.friction:
@@ -69,11 +62,9 @@ def floor_half_size(scene: Scene) -> Point:
 
 
 class Counted(Settings):
-    """Settings of an engine that need not count lengths in metres from the base.
+    """Settings of an engine whose lengths are in parts of a block's height, `units`, or in metres.
 
-    In single precision it matters: a rounding of the pivot's height is a velocity in a short step.
-    units are those of length in the height of the block, None counting in metres; heights are
-    centred that are counted from where the block's centre is at rest.
+    In single precision it matters; heights are `centred` that are counted from the centre at rest.
     """
 
     __slots__ = ()

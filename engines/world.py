@@ -12,10 +12,7 @@ FloatArray = NDArray[np.float64]
 
 
 class Moment(enum.Enum):
-    """At which moment of a step the velocity holds that is read after it.
-
-    The value is the part of the step that has passed by then.
-    """
+    """At which part of a step the velocity holds that is read after it."""
 
     MIDDLE = 0.5
     """The velocity was changed first, and has carried the block through the step (leapfrog)."""
@@ -33,10 +30,7 @@ REST_FACTOR = 8.0
 
 
 class Resolution(NamedTuple):
-    """What an engine's numbers tell apart: a length [m], a time [s], and a change by a part.
-
-    rest_factor is the longest step of a block at rest that nothing can lift yet, in ordinary steps.
-    """
+    """What numbers tell apart; rest_factor is the longest step at rest over the ordinary one."""
 
     length_m: float = 0.0
     time_s: float = 0.0
@@ -48,10 +42,7 @@ UNLIMITED = Resolution()
 
 
 class ContactPhase(enum.IntEnum):
-    """What a step is for, by which an adapter may choose how firmly a contact holds.
-
-    The block is at rest, turns about a corner, comes near an impact, or goes through it.
-    """
+    """What a step is for: a rest, a turn about a corner, coming near an impact, the impact."""
 
     REST = 0
     SWING = 1
@@ -60,11 +51,7 @@ class ContactPhase(enum.IntEnum):
 
 
 class Choice(NamedTuple):
-    """How long a step is [s], what it is for, and the corner turned about (0: both hold).
-
-    It never says what the state becomes: the block lifts, strikes its base and comes to rest by the
-    engine's own contact, whatever who chooses expects.
-    """
+    """How long a step is [s], what it is for, the corner turned about; never what comes of it."""
 
     dt_s: float
     phase: ContactPhase
@@ -89,11 +76,7 @@ class Step(NamedTuple):
 
 
 class Pose(NamedTuple):
-    """Where a body is, relative to the base, as the engine reports it: a row of a world's state.
-
-    x, z [m] is the centre of mass, from the level of the base and where its middle began; theta
-    [rad] leans towards +x, and its rate [rad/s] is that of the world's `Moment`.
-    """
+    """The centre of mass from base and beginning [m], the lean towards +x [rad], its rate."""
 
     x: float
     z: float

@@ -121,12 +121,9 @@ class MujocoSettings:
     def fitted(self, scene: Scene) -> "MujocoSettings":
         """Return settings whose impratio the friction allows, and whose soft surface fits.
 
-        In every step a pivot is lifted by (theta' dt)^2 R/2. A contact makes up for it where it
-        yields as much to its force: by (1 - d)/d, d being its impedance, times force over mass. One
-        that yields by less at its surface lets go, and three columns or more need not come together
-        again (EQUATIONS.md, "The rocking frame"); one that yields by much less a little deeper
-        overshoots, and the columns hand their load on. Both ask for a surface in proportion to the
-        lift, which is that of theta' = p alpha: to sin(alpha)^2.
+        A step lifts a pivot by (theta' dt)^2 R/2. A contact makes up for it that yields as much, by
+        (1 - d)/d times force over mass, d being its impedance. One that yields less at its surface
+        lets go; one that yields much less below overshoots: both go by sin(alpha)^2.
         """
         s = self
         if scene.stacked and s.impedance and s.soft_surface is not None:
@@ -255,11 +252,7 @@ def _row(numbers: tuple[float, ...] | list[float]) -> str:
 
 
 class MujocoWorld:
-    """Bodies on a plane, or on a box where the base moves.
-
-    A driven body has no velocity that friction could feel, so the box is given the surface
-    velocity that its motion has, or is another body, welded to the driven one.
-    """
+    """Bodies on a plane or, where the base moves, a box that is welded or has the velocity."""
 
     def __init__(self, scene: Scene, settings: MujocoSettings, dt_s: float) -> None:
         self.settings = s = settings.fitted(scene)

@@ -96,11 +96,10 @@ class ContactState:
 
 
 class Arrays(NamedTuple):
-    """The library's arrays, and three of what it is asked about.
+    """The library's arrays, three of them of what it is asked about; a welded base's joint is last.
 
-    Positions and velocities are of every joint, a welded base's last: of a body in the plane x, z
-    [m] from its home, theta [rad], and their rates; of a free one x, y, z [m] and a quaternion, its
-    real part first, and a velocity [m/s] and angular velocity [rad/s].
+    A body in the plane has x, z [m] from its home and theta [rad]; a free one x, y, z [m] and a
+    quaternion, its real part first; and so for velocities.
     """
 
     position: FloatArray
@@ -117,10 +116,7 @@ class Arrays(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """What the solver says of a step: how many contacts, and rows, R [1/kg] and f [N] of each row.
-
-    The rows of a weld are first, then come as many for each contact.
-    """
+    """The solver's contacts and rows, a weld's first, and R [1/kg] and f [N] of each row."""
 
     contacts: int
     rows: int
@@ -177,11 +173,7 @@ def set_reference(held: ContactState, arrays: Arrays, step: Step) -> None:
 
 
 def direct(impedance: float, dt_s: float, stiffness: float, damping: float) -> tuple[float, float]:
-    """Return solref of k dt^2 and b dt: minus a stiffness [1/s2] and minus a damping [1/s].
-
-    The library divides both by the impedance, the first one twice (MuJoCo's modeling.rst, "Solver
-    parameters").
-    """
+    """Return solref of k dt^2 and b dt, as MuJoCo's modeling.rst has it, "Solver parameters"."""
     unit = impedance / dt_s
     return -stiffness * (unit * unit), -unit * damping
 
@@ -241,11 +233,7 @@ def hold_pivot(held: ContactState, arrays: Arrays, step: Step, pair: int) -> Non
 
 
 def hold_at_rest(held: ContactState, arrays: Arrays, step: Step) -> None:
-    """Hold each corner from the gap [m] on to which what it carries presses it to the base.
-
-    Were all the same, the block would lean on the corner that carries more. A corner that is
-    higher is held from where it is, and comes down.
-    """
+    """Hold each corner from the gap [m] to which its own load presses it: none leans on another."""
     reach = step.kick_s * step.dt_s
     for i in range(held.pairs):
         all_of_it = arrays.pairs[i, YIELDS] * reach
@@ -284,11 +272,7 @@ def notice(held: ContactState, arrays: Arrays, forces: Forces, step: Step) -> No
 
 
 def look_at_yield(held: ContactState, arrays: Arrays, forces: Forces, step: Step) -> None:
-    """Note by how much [m/s2] the corners yield to their forces.
-
-    Where all touch, or all pivots, the solver's contacts are theirs in the order of the pairs; the
-    first of those between two bodies speaks for all.
-    """
+    """Note by how much [m/s2] corners yield to their forces, in the order of the pairs."""
     pairs, count, weld = arrays.pairs, forces.contacts, WELDED if held.welded else 0
     stride, each = (forces.rows - weld) // count, held.pairs // held.touching
     whole, pivots = count == held.pairs, count == held.touching * held.corners

@@ -31,10 +31,7 @@ C_TYPES: Mapping[str, Any] = {
 
 
 class Memory(NamedTuple):
-    """Addresses of a model and its data, and arrays that share their memory.
-
-    These hold the step [s], ncon, nefc, the addresses of efc_R and efc_force, and their arena.
-    """
+    """Addresses of a model and its data, and arrays that share the memory of what they name."""
 
     model: int
     data: int
@@ -55,10 +52,7 @@ def drive(
     lists: Lists,
     most: int,
 ) -> int:
-    """Take up to so many steps while the run goes on; return how many; with 0 read the state.
-
-    runs and lists are as for `engines.run.look.next_step`.
-    """
+    """Take up to so many steps while the run goes on; return how many; with 0 read the state."""
     held = holds[0]
     read(held, arrays)
     for taken in range(most):

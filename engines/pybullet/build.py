@@ -106,9 +106,8 @@ class BulletSettings(Settings):
 class BulletWorld(Adapter):
     """Bodies on a base in a PyBullet client that no other run uses meanwhile.
 
-    The base is a multibody without mass, whether it moves or not, if no constraint moves it: of
-    the massless bases PyBullet offers, the only one whose velocity friction feels. On a static
-    rigid body the response to the mirrored motion is not the mirror image.
+    The base is a multibody without mass if no constraint moves it: friction feels its velocity, and
+    on a static rigid body the response to the mirrored motion is not the mirror image.
     """
 
     library = "pybullet"
@@ -269,11 +268,7 @@ class BulletWorld(Adapter):
         return disagreement(pairs)
 
     def _set_out(self) -> None:
-        """Take a step far from the base, then let the bodies set out from where the scene begins.
-
-        Only after its first step has a body the inertia that was set: with the shape's own a block
-        that is lifted or released at once would turn too fast.
-        """
+        """Step once far from the base, which sets the inertia, then set out as the scene begins."""
         p, client, bodies = self._p, self._client, self._scene.bodies
         up = 2.0 * bodies[0].height - bodies[0].home[1]
         for number, body in zip(self.bodies, bodies, strict=True):
@@ -301,11 +296,9 @@ class BulletWorld(Adapter):
         self._due = step.base_x
 
     def _corrected(self, step: Step) -> dict[str, float]:
-        """Return what a step corrects of positions.
+        """Return what a step corrects of positions: none at an impact, nor along the base at rest.
 
-        None around an impact: a short step would make a velocity of it. None along the base at
-        rest, where the places that two corners are held at contradict each other by a rounding, and
-        the solver would look for a compromise until its iterations end.
+        A short step would make a velocity of it; two corners contradict each other by a rounding.
         """
         impact = step.phase in (ContactPhase.APPROACH, ContactPhase.STRIKE)
         part = 0.0 if impact else min(1.0, step.dt_s / self._ordinary)
@@ -396,10 +389,7 @@ class BulletWorld(Adapter):
 
 
 def taken() -> tuple[Any, int]:
-    """Return the library, and a client that no run uses, as good as new.
-
-    It is without a renderer, whose meshes take longer to make than the bodies.
-    """
+    """Return the library, and a client without a renderer that no run uses, as good as new."""
     p = imported("pybullet")
     if idle:
         return p, idle.pop()

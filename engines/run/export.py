@@ -43,10 +43,7 @@ WIDTH = 99
 
 @dataclass(slots=True)
 class _Made:
-    """An object that a call made: by which function, in which line, and where it is used.
-
-    One that something is done to, or that is asked for a part, is not used as an argument alone.
-    """
+    """An object that a call made, and whether it is used as an argument `alone`, without a part."""
 
     function: str
     line: int

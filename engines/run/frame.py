@@ -45,11 +45,7 @@ def begin_spread(layout: Layout) -> Spread:
 
 
 def see_spread(spread: Spread, watch: Watch, state: FloatArray) -> None:
-    """Take in a state (bodies, 4), a `Pose` a row; what comes apart is a problem of the watch.
-
-    It is one where a column turns further than all did before: a frame that comes apart when its
-    peak is over has that peak.
-    """
+    """Take in a state (bodies, 4); parting counts where a column turns further than all before."""
     columns = spread.columns
     if columns == 0:
         return

@@ -26,10 +26,8 @@ def mean_velocity_of(segments: Iterable[Iterable[float]]) -> Callable[[float, fl
 def rows_of(segments: Iterable[Iterable[float]]) -> list[Segment]:
     """Return the ground of a motion, a row for each segment and one for the time after.
 
-    A segment is start, end [s], amplitude [m/s2], omega [rad/s], phase [rad], offset [m/s2], slope
-    [m/s3]: from start to end the base's acceleration is
-    amplitude sin(omega (t - start) + phase) + offset + slope (t - start). The base is at rest
-    before the first, and keeps its velocity after the last.
+    From start to end [s] the base's acceleration is, with an amplitude in m/s2 and omega in rad/s,
+    amplitude sin(omega (t - start) + phase) + offset + slope (t - start).
     """
     rows: list[Segment] = []
     speed = 0.0

@@ -147,11 +147,7 @@ def choose(to: Landing, pace: Pace, pose: Pose, lifted: bool) -> Choice:
 
 
 def at_rest(to: Landing, pace: Pace) -> Choice:
-    """Step on through the calm, the longer the more is left; come slowly where the block may lift.
-
-    Whatever corners the base's motion has meanwhile, and in equal steps near the onset, where a
-    corner carries little.
-    """
+    """Step through the calm, the longer the more is left, and slowly where the block may lift."""
     if pace.loaded:
         to.side = pace.load_side
         return Choice(even(pace.left, resolving(to, pace)), ContactPhase.REST, to.side)
@@ -200,10 +196,7 @@ def towards_impact(to: Landing, ahead: float, longest: float, pose: Pose) -> Cho
 
 
 def stands(to: Landing, ahead: float, pose: Pose) -> bool:
-    """Return whether the free corner touches the base as it is: what is left no longer halves.
-
-    A rounding of its height would otherwise be approached for ever. The impact is `ahead` [s] away.
-    """
+    """Return whether the free corner touches: its rounding would be approached for ever."""
     touches = to.last_approach and gap(to, pose) < to.touching
     return touches and (1.0 - REMAINDER) * ahead >= to.last_dt
 

@@ -39,11 +39,7 @@ PHASE, PHASES = Step._fields.index("phase"), tuple(ContactPhase)
 
 @dataclass(slots=True)
 class Run:
-    """What is known of a run: how it steps, and what was seen.
-
-    There is one for each body that rocks, and one where there is none; the first one steps, and
-    sees what concerns all. Where nothing rocks its watch is that of the box, and is not used.
-    """
+    """What is known of a body that rocks; the first one steps and sees what concerns all."""
 
     pace: Pace
     landing: Landing
@@ -53,11 +49,7 @@ class Run:
 
 
 class Lists(NamedTuple):
-    """What of a run grows with the motion and with time.
-
-    ground (m + 1, 8), stops (k,) and loads (l, 3) as of `ground` and `steps`; rows and events as of
-    `watch`, (bodies, k, 4) each.
-    """
+    """What grows with motion and time: ground (m + 1, 8), stops, loads (l, 3), rows, events."""
 
     ground: FloatArray
     stops: FloatArray
@@ -67,10 +59,7 @@ class Lists(NamedTuple):
 
 
 def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray) -> bool:
-    """See a state (bodies, 4), and choose the next step (10,) unless the run is over.
-
-    Return whether it goes on; runs are updated, and rows and events of lists are written.
-    """
+    """See a state (bodies, 4), and write the next step (10,); return whether the run goes on."""
     if runs[0].pace.last_dt > 0.0 and not undecided(runs, lists, state):
         return False
     chosen = next_step(runs, lists, state)

@@ -9,11 +9,7 @@ TIME, RATE_S, THETA, RATE = range(4)
 
 
 class Row(NamedTuple):
-    """The end of a step: time [s], rotation [rad], and the angular velocity [rad/s].
-
-    The velocity belongs to the time `rate_s` [s], in the middle of the step or at its end, as the
-    engine integrates.
-    """
+    """The end of a step: time [s], rotation [rad], and rate [rad/s] at the time `rate_s` [s]."""
 
     time: float
     rate_s: float

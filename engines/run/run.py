@@ -80,10 +80,7 @@ def simulate_world(
     stepping: Stepping = Stepping.LANDING,
     resolution: Resolution = UNLIMITED,
 ) -> Response:
-    """Step a built world, at the start of the scene, until its response is decided.
-
-    That is a failed one with its reason where the world fails or the scene's limits are reached.
-    """
+    """Step a built world until its response is decided, the world fails or limits are reached."""
     monitor, drive = Monitor(scene, dt_s, stepping, world.moment, resolution), None
     if scene.compiled and (drive := getattr(world, "drive", None)):
         monitor.make_room(0)
@@ -170,10 +167,7 @@ def answer_of(scene: Scene, monitor: Monitor) -> Response:
 
 
 def together(responses: Sequence[Response], observables: Mapping[str, float]) -> Response:
-    """Return the response of bodies that rock together, and what was seen beside them.
-
-    It is the first one's; it has overturned if one has, and its peak is the largest.
-    """
+    """Return one response for all; it overturns if one does, and its peak is the largest."""
     first, *others = responses
     if not others:
         return replace(first, observables=observables) if observables else first
@@ -190,11 +184,9 @@ def together(responses: Sequence[Response], observables: Mapping[str, float]) ->
 
 
 def sample(rows: FloatArray, times: Sequence[float]) -> History:
-    """Sample a response at those of some times that it reached.
+    """Sample a response at those of some times that it reached: over a step theta is a parabola.
 
-    Over a step, the rotation is a parabola through both ends. Its curvature comes from the step
-    before or the step after, whichever gives less, so that it does not reach across an impact. The
-    rows (n, 4) are a `watch.Row` each: the start, and the ends of all steps.
+    Its curvature is that of the calmer neighbour, so that it does not reach across an impact.
     """
     time, rate_s, theta, rate = rows.T
     wanted = np.asarray(times, dtype=np.float64)

@@ -82,10 +82,7 @@ def begin_slide(scene: Scene) -> Slide:
 
 
 def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, pose: Pose) -> None:
-    """Take in a pose at the end [s] of a step, of which rows and slips (k, 4) are written.
-
-    A row is a `watch.Row` with place [m] and velocity [m/s] for rotation and rate.
-    """
+    """Take in a pose at the end [s] of a step; a row has place [m] and velocity [m/s]."""
     if not math.isfinite(pose.x + pose.z + pose.theta + pose.rate):
         slide.problem = DIVERGED
         return

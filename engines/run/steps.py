@@ -64,10 +64,7 @@ class Pace:
 def begin_pace(
     scene: Scene, dt_s: float, stepping: Stepping, moment: Moment, resolution: Resolution
 ) -> Pace:
-    """Return what the steps of a scene begin with, which land on impacts of what rocks alone.
-
-    Where an engine steps by itself, dt_s [s] is the time between two looks.
-    """
+    """Return what steps begin with; only what rocks lands; dt_s [s] may be between two looks."""
     lands = stepping is Stepping.LANDING and not scene.layout.rocking
     return Pace(
         policy=EVEN if lands else POLICIES.index(stepping),
@@ -88,11 +85,7 @@ def begin_of(scene: Scene, dt_s: float) -> float:
 
 
 def advance(pace: Pace, ground: Any, choice: Choice) -> Step:
-    """Return a chosen step over a ground (m + 1, 8), a row each, and move on to its end.
-
-    Over the step the base has its mean velocity. In the frame "base" the block carries the body
-    force -m u_g'' instead, the forcing of EQUATIONS.md, "From (1) and (2)".
-    """
+    """Return a chosen step over a ground (m + 1, 8), the base at its mean velocity, and move on."""
     dt, phase, side = choice
     begin, end = pace.time, pace.time + dt
     end = 0.0 if abs(end) < 0.5 * dt else end  # the motion begins with a step, however many rest
@@ -140,11 +133,7 @@ def even(left_s: float, longest: float) -> float:
 
 
 def timetable(scene: Scene, same: float) -> tuple[FloatArray, FloatArray]:
-    """Return the stops [s] that a step must not pass, and the loads, a `Load` a row.
-
-    A load begins where abs(u_g'') exceeds g tan(alpha) (EQUATIONS.md, "From (1) and (2)"). Times
-    closer than `same` [s] are the same.
-    """
+    """Return the stops [s], and the loads, in which abs(u_g'') exceeds g tan(alpha), a row each."""
     right, left = (scene.system.gravity * math.tan(alpha) for alpha in scene.alphas)
     loads = loads_of(scene.motion, np.array([left, right]))
     stops = {*scene.motion.breakpoints, scene.watched, *(t for load in loads for t in load[:2])}
@@ -170,10 +159,7 @@ def loads_of(motion: Motion, onsets: FloatArray) -> list[Load]:
 
 
 def _turns(motion: Motion) -> list[float]:
-    """Return the times [s] of the crests and zeros of the sines that make up a motion.
-
-    Between two of them, and on a straight segment, the acceleration is monotonic.
-    """
+    """Return the times [s] of crests and zeros of a motion, monotonic between two of them."""
     times: list[float] = []
     for start, end, amplitude, omega, phase, _, _ in motion.segments().tolist():
         if amplitude != 0.0:
@@ -186,10 +172,7 @@ def _turns(motion: Motion) -> list[float]:
 def _crossings(
     motion: Motion, pull: FloatArray, onset: FloatArray, low: FloatArray, high: FloatArray
 ) -> FloatArray:
-    """Return the times [s], each between two, at which pull u_g'' passes `onset`: to the digit.
-
-    They are bracketed all at once and in as many parts as cost little more than two do.
-    """
+    """Return the times [s], each between two, at which pull u_g'' passes `onset`: to the digit."""
     above, case = pull * motion.acceleration(low) > onset, np.arange(len(low))
     parts = np.linspace(0.0, 1.0, max(256 // max(len(low), 1), 2) + 1)[1:-1]
     while (np.nextafter(low, high) < high).any():

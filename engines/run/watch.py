@@ -155,10 +155,7 @@ class Watch:
 def begin_watch(
     scene: Scene, body: Body, dt_s: float, lands: bool, moment: Moment, resolution: Resolution
 ) -> Watch:
-    """Return what a body that rocks begins with: at rest, or in a swing that no uplift began.
-
-    The ordinary step dt_s [s] bounds what can be resolved.
-    """
+    """Return what a body that rocks begins with: at rest, or in a swing that no uplift began."""
     block, (theta, rate) = scene.system, scene.start
     lift = max(LIFT_WIDTHS * block.width, resolution.length_m)
     lift += LIFT_FALL * block.gravity * dt_s**2
@@ -384,11 +381,7 @@ def top(watch: Watch, theta: float) -> None:
 
 
 def decide(watch: Watch, row: Row) -> None:
-    """Say whether the response is decided.
-
-    After the motion a block overturns that moves outward beyond alpha, where its weight no longer
-    brings it back (EQUATIONS.md, "From (1) and (2)").
-    """
+    """Say whether it is decided; after the motion what moves outward beyond alpha overturns."""
     size, outward = abs(row.theta), row.theta * row.rate > 0.0
     over = row.time >= watch.motion_end
     still = row.time - watch.turned_at >= watch.rest_time
@@ -433,11 +426,7 @@ def landing(watch: Watch) -> tuple[float, float]:
 
 
 def lift_off(watch: Watch) -> float:
-    """Return the time [s] at which the swing left the rest, no earlier than that began.
-
-    The base's acceleration passes the onset steadily, so that theta'' grows in proportion to time
-    (EQUATIONS.md, "From (1) and (2)") and so does the square root of the angular velocity.
-    """
+    """Return when [s] the swing left the rest: from there theta'' grows in proportion to time."""
     a, b = row_of(watch.first, 1), row_of(watch.first, 2)
     root = math.sqrt(max(b.rate / a.rate, 0.0)) if a.rate != 0.0 else 0.0
     if root <= 1.0:

@@ -12,11 +12,7 @@ from engines import ENGINES
 
 
 class Trouble(NamedTuple):
-    """What a script shows, as its docstring says.
-
-    engine and called are its name and its title; title is what a user sees, mechanism by what it
-    comes about, and kind which kind of mechanism that is.
-    """
+    """What a script shows, as its docstring says: a title, its mechanism, and the kind of that."""
 
     engine: str
     called: str
