@@ -12,7 +12,7 @@ from analytic.frame import Rocker, RockingFrame, frame_restitution
 from analytic.frame_forces import frame_demands
 from analytic.maps import Modes, overturning_modes
 from analytic.models import MODELS
-from analytic.motion import BothWays, Delayed, Motion, SinePulse, Still
+from analytic.motion import Delayed, Motion, SinePulse, Still
 from analytic.record import Record
 from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import simulate
@@ -22,7 +22,6 @@ from analytic.steppers import integrate
 __all__ = [
     "GRAVITY",
     "MODELS",
-    "BothWays",
     "Delayed",
     "History",
     "Impact",

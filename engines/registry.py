@@ -131,12 +131,20 @@ def loaded(name: str, place: EntryPoint) -> Engine:
 
 
 def core_engines() -> tuple[str, ...]:
-    """Return the names of the engines that the published studies ask by default."""
+    """Return the names of the engines that the published studies ask by default.
+
+    >>> core_engines()
+    ('pybullet', 'mujoco')
+    """
     return tuple(name for name, engine in ENGINES.items() if engine.core)
 
 
 def installed_engines() -> tuple[str, ...]:
-    """Return the names of the engines whose libraries are here."""
+    """Return the names of the engines whose libraries are here.
+
+    >>> set(installed_engines()) <= set(ENGINES)
+    True
+    """
     return tuple(name for name, engine in ENGINES.items() if engine.installed)
 
 
