@@ -30,7 +30,7 @@ REFINED = 1e-14
 def forces(
     law: Law, side: float, a: float, y: float, v: float, weight: float = 1.0
 ) -> tuple[float, float]:
-    """Return (normal, horizontal) force over weight: V, U of EQUATIONS.md where R p^2 = 3g/4."""
+    """Return (normal, horizontal) force over weight (EQUATIONS.md, "The rocking frame")."""
     z = law.alpha - y
     rate = acceleration(law, side, a, y, weight)
     horizontal = a + 0.75 * side * (v * v * math.sin(z) + rate * math.cos(z))
