@@ -28,10 +28,7 @@ def free_amplitude(block, theta, impacts):
 
 
 def overturning_amplitude(omega_over_p, half_cycles):
-    """Return the least amplitude, over the onset, that overturns a linear block without an impact.
-
-    Half-sine: (omega/p) sin psi - cos psi = exp(-(p/omega)(pi - psi)), sin psi = onset/amplitude.
-    """
+    """Return the least amplitude over the onset that overturns a linear block with no impact."""
 
     def excess(log_amplitude):
         psi = math.asin(math.exp(-log_amplitude))

@@ -34,10 +34,7 @@ alone_in_module = pytest.fixture(forgetting, scope="module")
 
 @pytest.fixture
 def few(monkeypatch):
-    """Let a score ask two jobs of each table and preset; give what returns these of an engine.
-
-    The first, on which all is well, and another.
-    """
+    """Let a score ask the first, on which all is well, and another job of each table and preset."""
     from studies import score
 
     everything = score.jobs

@@ -1,7 +1,4 @@
-"""Rows to reproduce to the bit: `golden.py` prints what differs, `golden.py write` makes them.
-
-`golden.py NAME ...` compares those of some sources or engines, or of all "models", alone.
-"""
+"""Rows to reproduce to the bit: `golden.py [NAME ...]` prints what differs, `write` makes them."""
 
 import hashlib
 import sys

@@ -1,8 +1,7 @@
 """A second, slow route to every response: SciPy's DOP853 with its own event location.
 
-A block's, in seconds, with the rotation unfolded, from the equations as the paper prints them
-(corrected), and the free rocking after the pulse integrated, not decided by energy. That of several
-bodies by Newton and Euler, every contact being a constraint.
+A block's is from the equations as the paper prints them (corrected), the free rocking integrated,
+not decided by energy; that of several bodies is by Newton and Euler, contacts being constraints.
 """
 
 import itertools
@@ -28,10 +27,7 @@ MOST_IMPACTS = 12
 
 
 def swing(model, block, ground, side, span, state, **options):
-    """Return SciPy's path of a swing on a side, to its impact, to its lying down or to the end.
-
-    Its events are the impact, turning points and lying down.
-    """
+    """Return SciPy's path of a swing; its events are the impact, turning points and lying down."""
 
     def equation(time, x):
         return [x[1], angular_acceleration(model, block, side, x[0], ground(time))]
@@ -54,8 +50,7 @@ def swing(model, block, ground, side, span, state, **options):
 
 
 def first_uplift(block, pulse, onset):
-    """Return when abs(a_p sin(omega t + phase)) first exceeds the onset, and the side it lifts to;
-    (inf, 0) if it does not within the pulse."""
+    """Return when the pulse first exceeds the onset, and the side it lifts to; or (inf, 0)."""
     if abs(pulse.amplitude) <= onset * block.gravity:
         return math.inf, 0
     level = math.asin(onset * block.gravity / abs(pulse.amplitude))
@@ -68,11 +63,9 @@ def first_uplift(block, pulse, onset):
 
 
 def peak_and_impacts(model, block, pulse, start=(0.0, 0.0), most=MOST_IMPACTS):
-    """Return (peak/alpha or inf, impact times) up to 15/p past the pulse.
+    """Return (peak/alpha or inf, impact times) up to 15/p past the pulse, or after `most` impacts.
 
-    A block tilted at the start turns about the corner that it stands on, an upright one about that
-    which it turns to. After `most` impacts it stops; the peak is None if the pulse is not over by
-    then.
+    The peak is None if the pulse is not over by then.
     """
     saddle = math.tan(block.alpha) if model == "modified" else block.alpha
     onset = math.tan(block.alpha) if model != "housner" else block.alpha
@@ -107,11 +100,7 @@ AT_REST = 1e-7
 
 
 def history_under_samples(model, block, dt, samples, times):
-    """Return (rotations at `times`, first MOST_IMPACTS impact times) under a sampled acceleration.
-
-    Restarted at every sample; between two the acceleration is numpy's interpolation. Times end
-    with the samples.
-    """
+    """Return rotations at `times` and the first impact times under a sampled acceleration."""
     onset = block.gravity * (math.tan(block.alpha) if model != "housner" else block.alpha)
     instants = np.arange(len(samples)) * dt
 
@@ -158,9 +147,8 @@ class Struck(NamedTuple):
 class Bodies:
     """Planar bodies with coordinates q (x, z, angle clockwise each) and velocities v.
 
-    A scene has the diagonal of its mass matrix, `masses`, and by q and the side that holds the
-    Jacobian of its `contacts`, two rows each, with what is left of an acceleration times v**2; by q
-    and the time the `loads`. The first body's angle decides which side that is.
+    A scene has `masses`, `loads` by q and time, and by q and a side `contacts`: their Jacobian, two
+    rows each, and what is left of an acceleration times v**2. The first body's angle says the side.
     """
 
     def held(self, q, *points):
@@ -190,10 +178,7 @@ class Bodies:
         return v + by_mass.T @ impulse, impulse.reshape(-1, 2)
 
     def follow(self, q, v, side, t, ends, **options):
-        """Yield SciPy's path (q and v) of each swing from time t on, its side, and its impact.
-
-        Paths also end at `ends`; those have None instead. Their second event are turning points.
-        """
+        """Yield SciPy's path of each swing, its side, and its impact, None at one of `ends`."""
         size = len(q)
 
         def flow(t, state, side):

@@ -1,7 +1,4 @@
-"""Records in the forms of their archives.
-
-The samples are made up; the headers are worded as those of the archives, with other facts.
-"""
+"""Records in the forms of their archives: made-up samples below headers with other facts."""
 
 import numpy as np
 

@@ -106,8 +106,7 @@ def test_a_motion_without_length_is_sampled_from_its_start_to_the_last_of_the_ti
 @pytest.mark.parametrize("source", SOURCES)
 @pytest.mark.parametrize("omega_over_p", [6.0, 8.0])
 def test_a_block_that_does_not_rebound_is_lifted_again_at_once(source, omega_over_p):
-    """A squat block stops dead, and the ground, which is beyond the onset, turns it about the same
-    corner as before: the other one does not strike."""
+    """A squat block stops dead; the ground turns it about the same corner: no other one strikes."""
     block = RigidBlock(width=1.5, height=1.0)
     assert block.restitution == 0.0
     motion = pulse(5.0, omega_over_p, 3, block)

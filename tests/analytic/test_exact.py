@@ -58,8 +58,7 @@ PAPERS = [
     (0.3852, math.inf, 0.3605),
     (0.5558, math.inf, 0.4446),
 ]
-"""Peaks of three models, read off the panels of Figs 4 and 5 to four digits; by Housner's
-linearization 5-b and 5-c overturn, as the paper says."""
+"""Peaks of three models, read off the panels of Figs 4 and 5 to four digits; inf: overturns."""
 
 
 def test_the_papers_histories():

@@ -80,8 +80,7 @@ FREE = {
     "saved by its impact": (SQUAT, Still(), (0.9 * SQUAT.alpha, -0.4 * SQUAT.p), 1e-9),
     **{it: (MIDDLE, pulse(*it, MIDDLE), (0.0, 0.0), 1e-9) for it in product(SOME, SOME, (1, 2))},
 }
-"""Block, motion and start of what may rock or fall after the motion, and within what its forces are
-known."""
+"""Block, motion and start of what may rock or fall later, and within what its forces are known."""
 
 
 def test_free_rocking_is_watched_to_its_rest_or_until_it_passes_the_critical_rotation():

@@ -35,10 +35,7 @@ class Frame(Bodies):
         return self.masses * np.tile(pulls, self.frame.columns + 1)
 
     def contacts(self, q, side):
-        """Clockwise, on side +1, a column stands on its right foot and carries with its left head.
-
-        Its foot's rows come before its head's.
-        """
+        """Clockwise, on side +1, a column stands on its right foot; its head's rows come after."""
         half, beam = side * 0.5 * self.frame.width, 3 * self.frame.columns
         foot, rows = np.array([half, -0.5 * self.frame.height]), []
         for i, place in enumerate(self.places):
@@ -95,11 +92,7 @@ def test_frequency_and_restitution_of_the_tables(width, height):
 @pytest.mark.parametrize(("width", "height"), SIZES)
 @pytest.mark.parametrize("columns", [2, 3, 5])
 def test_an_inelastic_impact_of_all_contacts(width, height, columns):
-    """The bodies' own impact: linear equations of condition 1e3, solved to 1e-13 or better.
-
-    Its impulses lean, of all columns together, by cot(alpha) (1 - eta)/(1 + eta) at the feet and
-    at the heads.
-    """
+    """The bodies' own impact: linear equations of condition 1e3, solved to 1e-13 or better."""
     frame = RockingFrame(width=width, height=height, columns=columns, load=1.7)
     bodies = Frame(frame)
     q = bodies.upright
@@ -137,10 +130,7 @@ def test_a_frame_moves_as_a_block_that_is_as_large_as_its_load_says():
 
 @pytest.mark.parametrize("load", [0.5, 4.0])
 def test_demands_are_the_forces_of_the_rigid_bodies(load):
-    """Two columns, determinate; states some ms apart miss an extreme by (dt p)^2, some 1e-5.
-
-    The bodies are followed for two seconds, and their last and least swing is put beside it.
-    """
+    """States some ms apart miss an extreme by (dt p)^2, some 1e-5; the last swing is put beside."""
     frame = RockingFrame(width=0.5, height=1.5, load=load)
     _, _, forces, impulses = solve(frame, PULSE, 2.0, longest=0.004)
     q = Frame(frame).upright

@@ -26,10 +26,9 @@ def block_of(alpha, p, restitution=None):
 
 @dataclass(frozen=True)
 class Threshold:
-    """An amplitude [unit_g g] at which the outcome changes.
+    """An amplitude [unit_g g] at which the outcome changes; the print is a bracket, or rounded.
 
-    The print is a bracket, or what rounds to it. Where the model's amplitude is outside, `shift` is
-    the relative change of the frequency that brings it inside: p was rounded before it was used.
+    `shift` of the frequency brings the model's inside: p was rounded before it was used.
     """
 
     work: str
@@ -171,14 +170,12 @@ def test_the_frequency_beyond_which_nothing_overturns_after_one_impact(
 R, W = 0.925, 4.0
 ORBITING = RigidBlock(width=0.18, height=1.0, restitution=R)
 BIRTH, LOSS = 0.449115, 1.640448
-"""Amplitudes over alpha g between which the linear block has a stable orbit with a strike after
-every third half period, as printed in the 10th World Conference on Earthquake Engineering, 1992,
-pp. 3973-3977, eqs. (11)-(19)."""
+"""Amplitudes over alpha g between which a stable orbit strikes every third half period, printed in
+the 10th World Conference on Earthquake Engineering, 1992, pp. 3973-3977, eqs. (11)-(19)."""
 
 
 def impact_gaps(beta, periods=600):
-    """Return the half periods of shaking between late impacts and the rates after them, from near
-    the phase at which an orbit's swing to the right begins."""
+    """Return half periods between late impacts and the rates after them, from near the orbit."""
     omega, rise = W * ORBITING.p, math.tanh(1.5 * math.pi / W)
     impact = math.atan2((1.0 + R) / rise, (1.0 - R) * W) + math.pi - math.asin(BIRTH / beta)
     motion = SinePulse(

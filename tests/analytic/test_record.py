@@ -85,9 +85,8 @@ def test_what_exceeds_the_onset_for_long_overturns(excess):
 
 @pytest.mark.parametrize("seed", range(30))
 def test_excursions_too_small_to_matter_do_not_matter(seed):
-    """Samples on multiples of the onset make corners that touch it, plateaus at it, and jumps to
-    it; a part 1e-10 more or less of them makes excursions down to 1e-30 of alpha and their trains
-    of impacts, which may change no later peak by more than its conditioning times that part."""
+    """A part 1e-10 more or less of samples at the onset makes excursions down to 1e-30 of alpha;
+    they may change no later peak by more than its conditioning times that part."""
     draw = np.random.default_rng(seed)
     block = RigidBlock(width=1.0, height=draw.uniform(1.1, 8))
     shape = draw.integers(-6, 7, size=14) / 4
@@ -104,10 +103,8 @@ RECORD = noise(3, 140, 0.02, 1.5 * ONSET)
 KAPPA = 6.0
 BANDS = dict.fromkeys(UNTUNED, 0.6)
 BANDS |= {"tuned": 0.1, "error-controlled": 0.02, "landing": 2e-4, "": 1e-3}
-"""Largest error of a history over its peak, with κ = 6: the library's defaults lose impacts, a
-fixed step of p dt = 5e-4 is of first order in each of the five impacts, an engine that controls
-its error keeps some 4e-4 of a peak at κ = 1, landing steps of 1/200 are of second order, or add up
-the engine's roundings; the paper's solvers end an excursion up to 1e-6 rad late."""
+"""Largest error of a history over its peak, with κ = 6: defaults lose impacts, fixed steps are of
+first order in five, error control keeps 4e-4 at κ = 1, landing is of second order or rounds."""
 
 
 EACH = [name for name, source in SOURCES.items() if source.kind != "engine"]

@@ -1,5 +1,4 @@
-"""A block whose mass stands off the middle, a base that moves vertically too: against SciPy, by
-their limits and mirrors, by closed forms, and what is refused."""
+"""A mass off the middle, and a base that moves vertically too: by SciPy, limits and mirrors."""
 
 import math
 from dataclasses import replace

@@ -17,10 +17,7 @@ def box(friction, **more):
 
 
 def stepped(block, motion, end, v=0.0):
-    """Return slips, last place and time by steps of constant acceleration, parted where v is 0.
-
-    A smooth part errs by u''' dt^2, a start or a stop by the friction that a step misplaces, dt^2.
-    """
+    """Return slips, last place and time by steps of constant acceleration: to dt^2 at each stop."""
     # whole steps to the end of the motion, and to each sample of a record
     dt = motion.duration / math.ceil(motion.duration / 1e-5)
     time = dt * (np.arange(round(end / dt)) + 0.5)

@@ -36,10 +36,7 @@ def standing(scene, theta, rate):
 
 
 class ScriptedWorld(Bare):
-    """Has the rotation and rate that `script` says, and keeps the steps that it was given.
-
-    It is raised by `raised_m(time, theta)`.
-    """
+    """Rotates as `script` says, raised by `raised_m(time, theta)`, and keeps the steps given."""
 
     def __init__(self, scene, raised_m=lambda time, theta: 0.0):
         self.scene, self.steps, self._raised_m = scene, [], raised_m

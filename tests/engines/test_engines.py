@@ -1,8 +1,7 @@
 """Every engine under every preset, by what must hold of any engine.
 
-What only rounding may tell apart is held to what the engine declares to compute with; the rest to
-the order of the method, or to what a preset is for. With a library's defaults an engine may fail to
-feel the base or to rest: that is a finding, and not asked here.
+What rounding may tell apart is held to the declared precision, the rest to the method's order.
+With its defaults an engine may not feel the base: that is a finding, and not asked here.
 """
 
 import math
@@ -100,8 +99,7 @@ def test_frames_agree(engine, preset):
 
 @uses.every_fixed_use
 def test_first_order(engine):
-    """A quarter of the step makes about a quarter of the error, in the mean over cases whose
-    impacts fall anywhere in their steps."""
+    """A quarter of the step makes about a quarter of the error, in the mean over some cases."""
     motions = [pulse(1.3, 3.0 + 0.13 * i, 2) for i in range(8)]
     coarse, fine = (
         sum(error(engine, motion, preset="tuned", step=step) for motion in motions)

@@ -1,8 +1,7 @@
 """Steps that land on impacts: how near they bring an engine to the exact solution.
 
-The bands are of the default accuracy, 200 steps in 1/p, unless a test names another. The scheme is
-of second order: 1/200^2 = 2.5e-5, times a factor that is of order one for the paper's cases and as
-large as the conditioning of a case elsewhere.
+The bands are of 200 steps in 1/p: 1/200^2 = 2.5e-5, times a factor of order one for the paper's
+cases, and of a case's conditioning elsewhere.
 """
 
 import itertools
@@ -22,10 +21,7 @@ from studies.cases.drawn import draw
 
 
 def within(engine):
-    """Return which cases of the sweep are asked of an engine, and its median and largest error.
-
-    Double precision and second order, 2.5e-5, times a factor that is below one in the median.
-    """
+    """Return which cases of the sweep are asked of an engine, and its median and largest error."""
     roundings = equal_to(engine)
     return {
         "box2d": (96, 1e-5, 5e-4),  # a weak impact is landed to 1e-4 of its swing
@@ -128,8 +124,7 @@ def test_errors(engine, aspect, shaken, asked, most):
 @pytest.mark.parametrize("aspect", [3.0, 11.0])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_block_at_rest_does_not_lean_on_the_corner_that_carries_it(engine, aspect, sign):
-    """Not even where one corner is about to carry all of it: a lean is the error of a peak after
-    it, and peaks of 1e-3 alpha are wanted to the 1e-5 of the scheme."""
+    """A lean is the error of a peak after it, and those of 1e-3 alpha are wanted to 1e-5."""
     block = RigidBlock(width=1.0, height=aspect)
     motion = pulse(sign * 1.01, 3.0, 1, block)
     onset = math.asin(1.0 / 1.01) / motion.omega

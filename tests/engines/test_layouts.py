@@ -48,8 +48,7 @@ LANDED = [
         for system in (frame(4.0), frame(0.5, 3))
     ),
 ]
-"""Engine, motion, frame, by how much its peak may be missed, how far it parts or tilts, and goes in
-widths of a column."""
+"""Engine, motion, frame, and how far its peak is missed, it parts or tilts, and goes in widths."""
 
 
 @pytest.mark.parametrize(
@@ -104,8 +103,7 @@ def test_a_beam_that_slides_along_its_columns_is_named():
 @pytest.mark.parametrize("engine", [name for name in HERE if name not in ("drake", "newton")])
 @pytest.mark.parametrize("friction", [0.1, pytest.param(0.2, marks=pytest.mark.slow)])
 def test_a_slide_ends_where_it_should(engine, friction):
-    """Tuned engines give up g mu dt^2 of a slip where it starts and stops, dt = 1e-4 s at most, and
-    single precision a part 1e-4 of its end."""
+    """They lose g mu dt^2 where a slip starts or stops; single precision 1e-4 of its end."""
     box = SlidingBlock(width=1.0, height=0.5, friction=friction)
     exact, found = agreed(engine, SINE, system=box, preset="tuned")
     assert found.outcome is Outcome.SLID
@@ -144,10 +142,7 @@ def test_a_launched_box_stops_and_counts_as_far_as_it_got(engine):
 
 
 class Swings(Bare):
-    """Two columns that turn by 0.2 of alpha at first, later by 0.4, the second further by a part.
-
-    The beam slides by a way [m], and is raised by another, as they turn by 0.4.
-    """
+    """Two columns turn by 0.2 of alpha, then 0.4, the second a part further; a beam leaves them."""
 
     moment = Moment.END
 
@@ -207,11 +202,7 @@ def test_a_frame_that_trembles_when_it_has_come_to_rest_is_decided():
 
 @pytest.mark.parametrize(("way_m", "ends"), [(5e-6, True), (5e-4, False)])
 def test_a_box_that_trembles_where_it_is_is_at_rest(way_m, ends):
-    """Else a run of a box that two contacts hold in turn would never end.
-
-    It is pushed to and fro, step by step, by a hundredth of a tremor's way; its velocities are
-    those of a slide.
-    """
+    """Pushed to and fro by a hundredth of a tremor's way; else such a run would never end."""
     box = SlidingBlock(width=1.0, height=0.5, friction=0.5)
     posed = scene(SINE, system=box, max_steps=20_000)
     world = ScriptedWorld(posed)

@@ -1,7 +1,6 @@
 """How a run begins: released from a tilt, turning upright, sliding away, or after a rest.
 
-`uses.band` says how near landing steps come; fixed ones carry the p dt of the impact's step. In a
-rest before the motion contacts take up their load, and nothing is looked at.
+`uses.band` says how near landing steps come; fixed ones carry the p dt of the impact's step.
 """
 
 import math

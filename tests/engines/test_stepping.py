@@ -1,7 +1,4 @@
-"""Steps that land, given poses that are known: where they end, what for, and what cannot be known.
-
-The world keeps the steps that it is given; what it answers is the exact solution, or a script.
-"""
+"""Steps that land, given poses that are known: where they end, what for, what cannot be known."""
 
 import itertools
 import math

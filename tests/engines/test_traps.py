@@ -1,7 +1,4 @@
-"""Traps that libraries set without a word, and what engines keep from run to run.
-
-Traps that need no adapter to be seen are scripts of their own: `engines.troubles`.
-"""
+"""Traps that libraries set without a word, beside `engines.troubles`; what stays after a run."""
 
 from concurrent.futures import ThreadPoolExecutor
 from itertools import chain, islice
@@ -99,8 +96,7 @@ TRAPS = {
         *("rapier", of(LARGE, 1.3, 3.0, 2), 1e-3, {"units": None, "centred": False}, 1e-2),
     ),
 }
-"""Engine, scene, by how much at most its peak is missed, what is set otherwise, and by how much at
-least it is missed then."""
+"""Engine, scene, error at most, what is set otherwise, and its error at least then."""
 
 
 EACH = [
@@ -119,8 +115,7 @@ def test_what_an_engine_sets_spares_it_an_error(trap):
 
 
 def test_friction_that_has_no_mass_is_left_to_another_solver():
-    """Out of the plane nothing moves a planar block on a base of its own plane: the response is no
-    longer the mirror image of its mirror's, unless the base can slide aside."""
+    """Nothing moves a planar block aside: its response has no mirror image unless the base can."""
     pytest.importorskip("dartpy")
     for settings, mirrored in (({}, True), ({"aside": False}, False)):
         there, back = (
@@ -165,11 +160,7 @@ def test_physx_reads_back_what_is_set_for_all_and_what_is_not():
 
 
 def test_corners_jam_from_four_thirds_on():
-    """Painlevé: the least friction at which a corner's push turns it into the base, over all tilts.
-
-    A push N at the corner (x, z) from the centre, with drag mu N, moves the corner up by
-    1/m + x^2/I - mu x z/I, and I is m r^2/3.
-    """
+    """Painlevé: a push N at (x, z), with drag mu N, lifts the corner by 1/m + x^2/I - mu x z/I."""
     tilt = np.linspace(1e-3, 0.5 * np.pi - 1e-3, 100_001)
     x, z = np.cos(tilt), np.sin(tilt)
     jamming = (1.0 + 3.0 * x**2) / (3.0 * x * z)
@@ -178,8 +169,7 @@ def test_corners_jam_from_four_thirds_on():
 
 
 def test_a_block_that_sleeps_is_at_rest_on_its_base_and_has_no_answer_aloft():
-    """It leans at rest by what the contact yields; a slender one is slow enough at the turn of its
-    swing to be put to sleep there."""
+    """A slender block is slow enough at the turn of its swing to be put to sleep there."""
     pytest.importorskip("rapier3d")
     weak = pulse(0.9, 3.0)
     rested = rocked("rapier", weak, preset="default", duration=3.0, times=(3.0,))

@@ -1,7 +1,4 @@
-"""What is made of exact poses: times, velocities, uplift, rest and peak, and their order in dt.
-
-An engine has its own errors beside these; here there are none, so that the onlooker's stand alone.
-"""
+"""What is made of exact poses: times, velocities, uplift, rest, peak, and their order in dt."""
 
 import math
 
@@ -117,10 +114,7 @@ BASES = {
 
 
 def seen(motion, step=0.01, told_s=9.0 / BLOCK.p, kind=KnownWorld, **options):
-    """Return what is seen in equal steps of a world that is raised, or not what it should be.
-
-    The script knows as much as it is told, which is more than is looked at.
-    """
+    """Return what is seen in equal steps of a world that is raised, or not what it should be."""
     world = kind(scene(motion, step=step, duration=told_s), **options)
     return watched(world, scene(motion, step=step, max_steps=20_000), Stepping.FIXED)
 

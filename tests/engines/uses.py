@@ -47,8 +47,7 @@ every_landing_use = pytest.mark.parametrize(("engine", "preset"), LANDING)
 def speed_band(engine):
     """Return within what landing steps meet a closed form for the velocity of an impact.
 
-    It is extrapolated over three rows by up to two steps, which adds up to 17 times their errors. A
-    rounding of a block's place over a step, p dt = 5e-3, is a part of it, which is some p H/10.
+    Extrapolation over three rows adds up 17 times their errors, and roundings over p dt = 5e-3.
     """
     noise = ROUNDINGS * HERE[engine].precision.value / (0.1 * 5e-3)
     return max(band(engine), 17.0 * max(noise, NUISANCE.get(engine, 0.0)))
@@ -57,9 +56,8 @@ def speed_band(engine):
 def band(engine):
     """Return within what landing steps at the default accuracy, p dt = 5e-3, meet a closed form.
 
-    Core engines are of second order, (p dt)^2 = 2.5e-5 times a factor of a few; of others it is
-    asked that no impact falls inside an ordinary step, which would cost some p dt, or what an
-    engine declares as its sensitivity.
+    Core engines are of second order, (p dt)^2 = 2.5e-5; of others no more is asked than that no
+    impact falls inside an ordinary step.
     """
     return 1e-4 if engine in core_engines() else max(1e-3, NUISANCE.get(engine, 0.0))
 
@@ -90,11 +88,7 @@ def error(engine, motion=SHAKEN, **options):
 
 
 def errors_of_sweep(engine, every, **options):
-    """Return the errors of the peaks of the survivors of the sweep, outcomes having agreed.
-
-    Of all cases those of one width: the others are the same but for their size, and that this does
-    not matter is asked of every engine that lands.
-    """
+    """Return the errors of the peaks of the sweep's survivors, of one width if all are asked."""
     cases = [*sweep_cases([6, 7, 8, 9])][every // 2 :: every]
     if every == 1:
         cases = [case for case in cases if case.width_m == 1.0]

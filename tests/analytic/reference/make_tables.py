@@ -1,12 +1,8 @@
 """Solve the exact equations of rocking with 30 digits; write the tables beside this file.
 
-Independent of the package: equations (1) and (2) of the paper as printed, in seconds, integrated
-by mpmath's own Taylor method, impacts and turning points by bisection and the secant method on its
-dense output, and the free rocking after the pulse by conservation of energy.
-
-exact.csv keeps its cases, extreme.csv has those of `rocking stability`, whose numbers alone are the
-package's. One that the scan cannot follow (an excursion shorter than the scan, a rest between
-impacts) is left out, and named on the way, and so are pulses of hundreds of 1/p.
+Independent of the package: equations (1) and (2) as printed, by mpmath's own Taylor method, events
+by bisection and the secant method, and free rocking by conservation of energy. Cases that the scan
+cannot follow are left out, and named on the way, and so are pulses of hundreds of 1/p.
 
 Run: python tests/analytic/reference/make_tables.py
 """
@@ -31,10 +27,7 @@ with (HERE / "exact.csv").open(newline="") as kept:
 
 
 def solve(width, height, amplitude, omega, half_cycles, restitution=None):
-    """Return (peak/alpha or inf, impact times during the pulse) with 30 digits.
-
-    The velocity ratio at impacts is Housner's unless another one is given.
-    """
+    """Return (peak/alpha or inf, impact times during the pulse); Housner's ratio by default."""
     B, H, a, w = (mp.mpf(x) for x in (width, height, amplitude, omega))
     alpha, R = mp.atan(B / H), mp.sqrt(B * B + H * H) / 2
     p2 = 3 * G / (4 * R)
