@@ -1,7 +1,4 @@
-"""Contact models: what each setting of an engine's contact costs and buys, one at a time.
-
-From the best setting of an engine one factor at a time, and from its library's defaults.
-"""
+"""Contact models: what one setting at a time costs and buys, from the best and the defaults."""
 
 from __future__ import annotations
 

@@ -1,8 +1,4 @@
-"""Overturning maps: which pulses overturn a block, by which mode, and who predicts that wrongly.
-
-Models map a plane of pulses. Engines are asked pulse by pulse over twelve planes, of blocks that
-similarity makes alike.
-"""
+"""Overturning maps: which pulses overturn a block, by which mode, and who predicts that wrongly."""
 
 from __future__ import annotations
 

@@ -111,12 +111,8 @@ def measure(job: Job) -> Row:
 
 
 def strike(job: Job) -> tuple[tuple[float, float, float], str]:
-    """Let a block strike its base; return what it keeps, and what the library says went wrong.
-
-    That is the rate after over before, and the speeds of the corner, upwards and along the base,
-    over that of its approach. Where the corner comes off, the block flies, and its rate is read
-    there; where it stays, the block turns about it, and its rate is taken back to the impact.
-    """
+    """Let a block strike its base; return its rate and the corner's speeds, after over before."""
+    # where the corner comes off, the block flies; else its rate is taken back to the impact
     case, labels = job.case, job.labels
     scene = scene_of(case.system, case.motion, job.asked.preset, **job.settings)
     world = build(job.asked.declared.use(scene))

@@ -75,11 +75,8 @@ def _frames(sources: Sequence[Source], quick: bool) -> Iterator[Job]:
 
 
 def _steps(source: Source, case: Question, phases: int) -> Iterator[Row]:
-    """Yield steps by which the first impact falls into different parts of equal ones.
-
-    With n = t/dt steps before an impact at t, a step of dt (1 + k/(N n)) has it the part k/N of a
-    step earlier, for k = 0, 1, ..., N - 1. A source without equal steps is asked once, at its own.
-    """
+    """Yield steps by which the first impact falls into different parts of equal ones."""
+    # n = t/dt steps before an impact at t, a step of dt (1 + k/(N n)) has it k/N of a step earlier
     if not source.engine or source.accurate:
         yield {}
         return

@@ -133,12 +133,9 @@ def measure(job: Job) -> Row:
 
 
 def strength(block: RigidBlock, motion: Record) -> Strength:
-    """Find by which factors on a motion the exact block overturns; RuntimeError if one fails.
-
-    Outcomes are looked up on a grid of factors, a hundredth apart, and the first that overturns is
-    followed down to the edge. Under a long record overturning begins in slivers, some no wider than
-    1e-5 of the factor: one that lies between two points of the grid is not seen.
-    """
+    """Find by which factors on a motion the exact block overturns; RuntimeError if one fails."""
+    # under a long record overturning begins in slivers, some no wider than 1e-5 of the factor: one
+    # between two points of the grid is not seen
     solve = scaled(block, motion)
 
     def falls(factor: float) -> bool:
@@ -160,12 +157,8 @@ def strength(block: RigidBlock, motion: Record) -> Strength:
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return the answers, each beside the margin of its block and the friction that it needs.
-
-    A factor that was asked for and overturns counts for the margin, too: it may lie in a sliver
-    that the search did not see. What slides has no margin, nor an answer of a source that cannot
-    let it slide.
-    """
+    """Return the answers, each beside the margin of its block and the friction that it needs."""
+    # a factor that was asked for and overturns counts for the margin: the search may miss a sliver
     further = [name for name in rows if name not in COLUMNS]
     rows = rows.reindex(columns=[*COLUMNS, *further]).astype({"friction": float})
     answers, margins = rows[rows["scale"] > 0.0], rows[rows["scale"] == ALL_SCALES]

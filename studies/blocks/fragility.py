@@ -56,11 +56,8 @@ def _fit(margins: FloatArray, lifts: pd.Series) -> dict[str, float]:
 
 
 def lognormal(logs: FloatArray, beyond: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the mean and spread of logarithms of greatest likelihood, along the last axis.
-
-    Where `beyond`, a value is only known to be larger: its expectation stands for it, again and
-    again (Dempster, Laird and Rubin 1977).
-    """
+    """Return the mean and spread of logarithms of greatest likelihood, along the last axis."""
+    # expectations stand for values `beyond`, again and again (Dempster, Laird and Rubin 1977)
     from scipy.stats import norm  # no help waits for it
 
     mean, spread = logs.mean(-1, keepdims=True), logs.std(-1, keepdims=True)

@@ -1,8 +1,4 @@
-"""Two rocks on a shake table: the public folder of their tests, read or refused in one line.
-
-It is https://github.com/ZhiangChen/virtual_shake_robot_pybullet (GPL-3), of which nothing is kept
-here. Its meshes show one boulder twice.
-"""
+"""Two rocks on a shake table: their tests, read from a clone (GPL-3) that is not kept here."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -81,11 +77,8 @@ def read_motion(path: Path) -> Record:
 
 
 def read_mesh(path: Path) -> list[RigidBlock]:
-    """Return blocks of a mesh, as if mass were spread evenly: weak side right, left, on both sides.
-
-    The sides are those of the footprint, across the edge next to the centre of mass; the blocks are
-    twice as high as that centre, and have the mesh's moment of inertia about the edge's direction.
-    """
+    """Return blocks of a mesh with its height and inertia: weak side right, left, on both sides."""
+    # its sides are those of the footprint, across the edge next to the centre of mass
     with reading(path, "a mesh of triangles that stands on a face"):
         lines = [line.split() for line in path.read_text().splitlines()]
         points = np.array([line[1:4] for line in lines if line[:1] == ["v"]], dtype=float)

@@ -1,10 +1,6 @@
-"""The plainest and the best way to ask an engine for a coefficient of restitution e.
-
-Each is settings beside the best contact's.
-
-MuJoCo has none: its contact is a spring with a damper, which may push but not pull, and lets go
-when its force is zero (Schwager and Poeschel, Granular Matter 9, 2007).
-"""
+"""The plainest and the best way to ask an engine for a coefficient of restitution e."""
+# MuJoCo has none: its contact is a spring with a damper, which may push but not pull, and lets go
+# when its force is zero (Schwager and Poeschel, Granular Matter 9, 2007).
 
 import math
 from collections.abc import Callable, Mapping
@@ -47,10 +43,7 @@ def given_back(ratio: float) -> float:
 
 
 def damping_ratio(e: float) -> float:
-    """Return the damping ratio of a spring that gives back e > exp(-2), by bisection.
-
-    Where e = 0, it is that of the library.
-    """
+    """Return the damping ratio of a spring that gives back e > exp(-2), by bisection."""
     low, high = 0.0, 1.0
     while e and low < (middle := 0.5 * (low + high)) < high:
         low, high = (middle, high) if given_back(middle) > e else (low, middle)

@@ -36,10 +36,7 @@ POST_M = 0.5
 
 
 def outlines(system: System, at: float) -> FloatArray:
-    """Return the corners of every body of a system, shape (bodies, 4, 2) [m].
-
-    `at` is its rotation [rad], or its place along the base [m] where nothing rocks.
-    """
+    """Return the corners [m] of every body, (bodies, 4, 2), at a rotation [rad] or a place [m]."""
     corners = []
     for body in layout_of(system, 1.0, None, (at, 0.0)).bodies:
         x, z = 0.5 * body.width, 0.5 * body.height

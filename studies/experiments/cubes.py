@@ -216,11 +216,8 @@ def measure(job: Job) -> Row:
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return how far each engine and settings are off, in the tosses that no fit has seen.
-
-    Fitted settings are those drawn that lose least in the other half. A number of which there is
-    no result is nan.
-    """
+    """Return how far each engine and settings are off, in the tosses that no fit has seen."""
+    # fitted are those drawn settings that lose least in the other half
     lines = []
     for engine, mine in rows[rows["outcome"] == "measured"].groupby("engine", sort=False):
         found = {row["settings"]: (row, unpacked(row["found"]).reshape(-1, 4))

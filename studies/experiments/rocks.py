@@ -81,11 +81,8 @@ def measure(job: Job) -> Row:
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return the tests of each rock with who predicts a fall; what is right; and areas under ROC.
-
-    What is fitted predicts the fifth of the tests that its fit has not seen; fitted to all, it is
-    listed besides. A source that fails predicts nan, which is wrong.
-    """
+    """Return the tests of each rock with who predicts a fall, what is right, and areas of ROC."""
+    # what is fitted predicts the fifth of the tests that its fit has not seen; nan is wrong
     falls = (rows["outcome"] == Outcome.OVERTURNED.value).astype(float)
     rows = rows.assign(falls=falls.where(rows["outcome"] != Outcome.FAILED.value))
     tests = rows[rows["block"] == "grid"].set_index("test")

@@ -1,7 +1,5 @@
-"""The command line: what runs a command, and what a user sees when it cannot be run.
-
-What takes time to import is imported inside functions, so that a signal meanwhile is dealt with.
-"""
+"""The command line: what runs a command, and what a user sees when it cannot be run."""
+# What takes time to import is imported inside functions, so that a signal meanwhile is dealt with.
 
 from __future__ import annotations
 

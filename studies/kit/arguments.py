@@ -1,7 +1,4 @@
-"""What a command line may say: numbers in their ranges, words, paths; and options in groups.
-
-A group is a dataclass, which is the type of a command's parameter; a refusal is one line.
-"""
+"""What a command line may say: numbers in their ranges, words, paths; and options in groups."""
 
 import errno
 import math

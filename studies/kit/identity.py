@@ -1,10 +1,6 @@
-"""What made a row: the versions of what computes, and the files whose code it runs through.
-
-A row of a model depends on `analytic`; one of an engine on what engines share and on that engine's
-own files as well. Besides, it depends on the file of the function that measured it, and on the
-files of `studies` that this imports. Comments, docstrings, other engines, words and pictures make
-no row old.
-"""
+"""What made a row: the versions of what computes, and the files whose code it runs through."""
+# A row of a model depends on `analytic`, one of an engine on what engines share and on its own
+# files, and both on the file that measured it and what that imports of `studies`.
 
 import ast
 import hashlib
@@ -116,10 +112,8 @@ def maker_of(source: Source, measure: Callable[..., Any]) -> Maker:
 
 
 def changed(then: Maker, now: Maker) -> list[str]:
-    """Return what made a row and would make another one now.
-
-    A version counts only where there is one: what was made elsewhere cannot be made anew here.
-    """
+    """Return what made a row and would make another one now."""
+    # a version counts only where there is one: what was made elsewhere cannot be made anew here
     return [
         name
         for name in {**now, **then}

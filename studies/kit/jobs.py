@@ -31,16 +31,13 @@ class Question:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
-    """One question to one source, which must exist and take the options.
-
-    Where the process that asked has ended without an answer, `ask` returns what `lost` is.
-    """
+    """One question to one source, which must exist and take the options."""
 
     labels: Mapping[str, Any]  # the first columns of the row
     case: Question
     source: str  # its name, as the user wrote it
     options: Mapping[str, Any] = field(default_factory=dict)  # further settings of the source
-    lost: Response | None = field(default=None, repr=False)
+    lost: Response | None = field(default=None, repr=False)  # the answer if its process ended
     apart: bool = False  # whether it runs in a process of its own though its source is a model
 
     def __post_init__(self) -> None:

@@ -1,8 +1,4 @@
-"""Jobs side by side, here or on a Dask cluster: measured where they may fail, kept, counted.
-
-Dask is imported only when a cluster is named. A worker must have no nanny, under which it could
-start no process: dask worker ADDRESS --no-nanny --nthreads 1.
-"""
+"""Jobs side by side, here or on a Dask cluster: measured where they may fail, kept, counted."""
 
 import multiprocessing
 import socket
@@ -64,11 +60,8 @@ def here(jobs: Sequence[Job], measure: Measure) -> Rows:
 def local(
     jobs: Sequence[Job], measure: Measure, workers: int, limit_s: float, at_once: bool = False
 ) -> Rows:
-    """Yield the number and row of each job: models in this process, engines in their own.
-
-    The measure is a function of a module. If somebody waits for the rows and nobody for their run
-    times (`at_once`), nothing is compiled for a few jobs.
-    """
+    """Yield the number and row of each job: models in this process, engines in their own."""
+    # nothing is compiled for a few jobs whose run times nobody reads (`at_once`)
     many = not at_once or len(jobs) > FEW
     if sys.stderr.isatty():
         Kernel.tell = say

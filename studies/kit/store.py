@@ -1,7 +1,4 @@
-"""A results folder: finished rows in SQLite, tables as CSV, and what made them as JSON.
-
-A row is found again by the key of its job, and kept as long as what made it is the same.
-"""
+"""A results folder: finished rows in SQLite, tables as CSV, and what made them as JSON."""
 
 from __future__ import annotations
 
@@ -95,11 +92,8 @@ class Store:
         self._base.close()
 
     def kept(self, jobs: Mapping[str, Job], makers: Mapping[str, Maker]) -> dict[str, Row]:
-        """Return the rows that would be made so now, but those that another run may make otherwise.
-
-        Jobs are given by their keys, and by a source what makes its rows now. A folder that also
-        holds rows of what is not asked for is refused: no table loses them unseen.
-        """
+        """Return the rows that would be made so now, without those that another run may mend."""
+        # a folder that holds rows of what is not asked for is refused: no table loses them unseen
         if self.filled:
             self._fill(jobs, makers)
         rows = self._rows()

@@ -1,8 +1,4 @@
-"""Processes that do one task after another, whatever the tasks do to them.
-
-Each is waited for no longer than its task may take, and is ended with the group of processes that
-it started; another one takes its place. A process that ends takes one task with it, not the run.
-"""
+"""Processes that do one task after another; one that ends takes one task with it, not the run."""
 
 import ctypes
 import os

@@ -1,9 +1,5 @@
-"""The paper's cases as one batch of worlds, stepped by MuJoCo Warp, or one by one in MuJoCo's C.
-
-All worlds take the same step in seconds on a base at rest, whose acceleration is a gravity of each
-world's own. The models that MuJoCo's adapter builds tell what differs by world. Peak and outcome
-are found where the worlds are, as `engines.run.watch` finds them.
-"""
+"""The paper's cases as one batch of worlds, stepped by MuJoCo Warp, or one by one in MuJoCo's C."""
+# All worlds take the same step on a base at rest, whose acceleration is each world's own gravity.
 
 from __future__ import annotations
 
@@ -106,10 +102,7 @@ def spread(found: FloatArray, first: FloatArray) -> Row:
 
 
 def found_of(asked: Mapping[str, Any]) -> Row:
-    """Step the batch that a job's labels name: peaks over alpha of each run and world, and times.
-
-    The peak is inf of what fell, nan of what has no result.
-    """
+    """Step a batch; return times, and peaks over alpha of each run and world, inf of a fall."""
     if asked["backend"] == EXACT:
         exact_peaks()  # what is compiled is loaded
         began = perf_counter()
@@ -223,10 +216,7 @@ def in_warp(posed: Sequence[tuple[Any, ...]], dt_s: float, device: str, runs: in
 
 
 def look_in(wp: Any, rows: FloatArray) -> tuple[Any, Any, Any]:
-    """Return Warp's kernel that looks at every world before a step, and what it knows and saw.
-
-    Peak and outcome are decided at the first turn after the motion, at rest, or beyond alpha.
-    """
+    """Return Warp's kernel that looks at every world before a step, and what it knows and saw."""
 
     def look(known: Any, seen: Any, q: Any, v: Any, gravity: Any, planar: int) -> None:
         i = wp.tid()

@@ -39,11 +39,8 @@ def enough(times: Sequence[float], spent_s: float, most_s: float) -> bool:
 
 
 def best_of(actions: Sequence[Callable[[], Response]], most_s: float) -> list[tuple[Response, int]]:
-    """Return of each action the response with the shortest run and set-up times, and the runs.
-
-    They are run in turn until the time of each is known, so that what else a machine does for a
-    while meets them all alike. `most_s` is the time [s] spent at most on each, in the mean.
-    """
+    """Return of each action the response with the shortest run and set-up times, and the runs."""
+    # in turn, so that what else a machine does for a while meets all alike
     began, rounds, known = perf_counter(), list[list[Response]](), False
     while not known:
         rounds.append([action() for action in actions])

@@ -24,14 +24,9 @@ OF_FRAMES = ("exact_outcome", "exact_peak", "agrees", "error", "kappa", "kappa_e
 
 
 def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
-    """Add the exact outcome and peak of every case, and the difference of each row from them.
-
-    The rows have the columns that `posed_cases` takes, outcome and peak_ratio; of frames also load,
-    aspect and omega_over_p then being those of a column and of the frame, and OF_FRAMES alone is
-    added. error (relative) and difference (of abs(theta)/theta_cr) are nan where the outcome is
-    wrong or the exact block does not rock and survive; kappa, kappa_eta and sensitivity where no
-    peak survives.
-    """
+    """Add the exact outcome and peak of every case, and the difference of each row from them."""
+    # error and difference are nan where the outcome is wrong or the exact block does not rock and
+    # survive; kappa, kappa_eta and sensitivity where no peak survives
     posed, eta, back = _different(rows)
     peak, outcome = peak_ratios(*posed, restitution=eta)
     condition = condition_numbers(*posed, restitution=eta)

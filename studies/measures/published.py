@@ -52,12 +52,9 @@ SETTING = ["engine", "preset", "value"]
 
 
 def settings(published: Path, engines: Sequence[str]) -> pd.DataFrame:
-    """Return a line for each published setting of some engines, from coarse to fine in a preset.
-
-    Columns: SETTING, whose value is nan where the library has its step in seconds; wall_s, the mean
-    time of a case [s]; runs, how often each was timed at least; cases; max_error, the largest of
-    the peak, inf where an outcome is wrong or a case failed.
-    """
+    """Return a line for each published setting of some engines, from coarse to fine in a preset."""
+    # SETTING has a value of nan where the library's step is in seconds; max_error is inf where a
+    # case failed or an outcome is wrong
     found = pd.concat([along_steps(published, engines), _of_paper(published, engines)])
     # where both tables know a setting, the ladder's time is the best of several
     first = dict.fromkeys(("wall_s", "runs"), "first")

@@ -61,11 +61,9 @@ def checked(engine: str) -> str:
 
 
 def in_the_air(source: Source) -> Iterator[Line]:
-    """Yield what a block shows that turns in the air and is pulled for one step, and its moment.
-
-    All of the velocity gained moves it within that step where the velocity is changed first, half
-    where both go together, else none.
-    """
+    """Yield what a block shows that turns in the air and is pulled for one step, and its moment."""
+    # all of the velocity gained moves it within that step where the velocity is changed first, half
+    # where both go together, else none
     own, along = source.used.stepping is Stepping.OWN, "base" in source.declared.frames
     kick = (PULL if along else 0.0, -PULL)
     pulls = [(0.0, PULL)] * 4 + [REST] * 24 + [kick] + [REST] * 4
@@ -99,11 +97,8 @@ def on_the_base(source: Source) -> Iterator[Line]:
 
 
 def in_contact(source: Source) -> Iterator[Line]:
-    """Yield friction, balance, inertia and restitution, from a slide and from two falls.
-
-    A fall's angular acceleration is K sin(theta - alpha): one on either side of the balance alpha
-    gives it and K, and that the inertia. Of mass and inertia, a block alone shows the ratio.
-    """
+    """Yield friction, balance, inertia and restitution, from a slide and from two falls."""
+    # a fall's acceleration K sin(theta - alpha) on either side of alpha gives alpha, K and inertia
     steps = steps_of(source)
     if source.used.stepping is Stepping.FIXED:
         _, poses = moved(source, [(INCLINE, -G)] * 200, system=BOX, each=steps)

@@ -1,8 +1,5 @@
-"""What is wrong about an outcome: counted here alone, in three kinds, for every table and sentence.
-
-Outcomes and peaks alone are compared, so that whoever reads a published table can count the same.
-Rest and rocking are told by peaks, for an engine's word depends on how far its contact gives way.
-"""
+"""What is wrong about an outcome: counted here alone, for every table and sentence."""
+# Rest and rocking are told by peaks, for an engine's word depends on how far its contact gives way.
 
 from __future__ import annotations
 

@@ -15,11 +15,7 @@ from studies.kit.study import Study, Tables
 
 @dataclass(frozen=True)
 class Part:
-    """A folder of results, and the command that fills it, with its further arguments.
-
-    It has a title where one study fills several folders; `weaker` is what its quick form lacks. One
-    that `needs` a folder of the reader's is left out of a report.
-    """
+    """A folder of results, and the command that fills it, with its further arguments."""
 
     folder: str
     name: str

@@ -189,11 +189,8 @@ def core_sources(*presets: str) -> tuple[str, ...]:
 
 
 def expanded(names: Iterable[str]) -> Iterator[str]:
-    """Yield the names with those of engines in place of a group's; "engines:tuned" has a preset.
-
-    Engines of a group that have no such preset are left out, unless none has it; so are those whose
-    best preset another group had.
-    """
+    """Yield the names with those of engines in place of a group's; "engines:tuned" has a preset."""
+    # engines without that preset are left out, unless none has it; so are repeats of another group
     had: set[tuple[str, str]] = set()
     for name in names:
         group, colon, preset = name.partition(":")

@@ -1,8 +1,4 @@
-"""General-purpose integrators on the same problem: what one would use without this project.
-
-The equation, the uplift and the rest are the reference's; steps, error control and events are
-SciPy's own.
-"""
+"""General-purpose integrators on the same problem: what one would use without this project."""
 
 import math
 import time
@@ -104,12 +100,9 @@ class _March:
         return Outcome.FAILED
 
     def _stretch(self, j: int, tau: float, y: float, v: float, side: float) -> Any:
-        """Integrate to the next impact, breakpoint or decision.
-
-        Of free rocking 60/p at once decide: longer than any block that a double can hold takes to
-        turn or to fall, some -ln(1e-16) = 37. The first step out of an impact is a tenth at most of
-        the excursion, 2 v / y'', for an excursion shorter than that step would be stepped over.
-        """
+        """Integrate to the next impact, breakpoint or decision."""
+        # 60/p of free rocking decide: a fall takes -ln(1e-16) = 37 at most; the first step out of an
+        # impact is a tenth of the excursion, 2 v / y'', which a longer one would step over
         law, rows = self.posed.laws[0], self.posed.segments[j : j + 1].tolist()
         end = rows[0][1] if rows else min(self.until, tau + 60.0)
         decides = not rows and self.until == math.inf
