@@ -1,9 +1,6 @@
-"""The questions asked of the reference and the engines.
-
-One file a study, or a folder. A case flows one way: `cases` has it, `sources` answers, `kit` runs
-both and keeps the rows in a folder (`kit.study` says how), `measures` compares an answer with the
-exact one, `drawing` draws it, `page` shows all.
-"""
+"""The questions asked of the reference and the engines: one file a study, or a folder."""
+# `cases` has a case, `sources` answers, `kit` runs both and keeps the rows in a folder, `measures`
+# compares an answer with the exact one, `drawing` draws it, `page` shows all.
 
 from __future__ import annotations
 

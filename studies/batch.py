@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import product
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -19,19 +19,8 @@ from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import listed
 from studies.kit.study import Figures, Study, Tables, stages
 from studies.kit.tables import unpacked
-from studies.measures.batches import (
-    EVERY,
-    EXACT,
-    MEASURED,
-    NAMES,
-    SPREAD,
-    WARP,
-    C,
-    all_cases,
-    exact_peaks,
-    measure,
-    numbers_of,
-)  # fmt: skip
+from studies.measures import batches
+from studies.measures.batches import EVERY, EXACT, MEASURED, NAMES, SPREAD, WARP, C, measure
 from studies.measures.wrongness import KINDS, kinds_of
 
 TARGETS = (0.1, 0.01, 0.001)
@@ -44,18 +33,14 @@ RUNS = 20
 SAME = ["backend", "device", "preset", "dt_ms", "worlds", "runs"]
 
 
-@Parameter(name="*")
+DEVICE = Parameter(help="cpu or cuda, where MuJoCo Warp runs; by default it is left out.")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Where MuJoCo Warp runs.
+    """Where MuJoCo Warp runs."""
 
-    Attributes
-    ----------
-    device
-        cpu or cuda, where MuJoCo Warp runs; by default it is left out.
-    """
-
-    device: Literal["cpu", "cuda"] | None = None
+    device: Annotated[Literal["cpu", "cuda"] | None, DEVICE] = None
 
 
 def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
@@ -71,7 +56,8 @@ def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
         rows += [(WARP, device, *each, most, 1) for each in asked]
         rows += [(WARP, device, *USUAL[0], worlds, 1) for worlds in others]
         rows.append((WARP, device, *USUAL[0], *((64, 2) if quick else (EVERY, RUNS))))
-    case = Question(system=all_cases()[0].block, motion=all_cases()[0].motion)
+    first = batches.all_cases()[0]
+    case = Question(system=first.block, motion=first.motion)
     sources = [f"mujoco:{row[2].partition(',')[0]}" if row[2] else EXACT for row in rows]
     return [Job(labels=dict(zip(SAME, row, strict=True)), case=case, source=source)
             for row, source in zip(rows, sources, strict=True)]  # fmt: skip
@@ -83,14 +69,14 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     plain = {}
     for row in rows[(rows["backend"] == C) & rows["wall_s"].notna()].to_dict("records"):
         peaks = plain[row["preset"], row["dt_ms"]] = np.full(EVERY, math.nan)
-        peaks[numbers_of(row["worlds"])] = unpacked(row["peaks"])
+        peaks[batches.numbers_of(row["worlds"])] = unpacked(row["peaks"])
     lines = []
     for row in rows.to_dict("records"):
         line = {str(name): row[name] for name in (*SAME, "message", *MEASURED)}
         if not row["message"]:
-            numbers = numbers_of(min(row["worlds"], EVERY))
+            numbers = batches.numbers_of(min(row["worlds"], EVERY))
             mine, other = unpacked(row["peaks"]), plain.get((row["preset"], row["dt_ms"]))
-            line |= _off(mine, exact_peaks()[numbers], "")
+            line |= _off(mine, batches.exact_peaks()[numbers], "")
             line |= {} if other is None else _off(mine, other[numbers], "c_")
         lines.append(line)
     batch = pd.DataFrame(lines)

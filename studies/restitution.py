@@ -1,11 +1,7 @@
-"""A block that strikes its base with a corner: which coefficient of restitution an engine gives.
-
-At the impact an impulse acts on the striking corner alone. Held by friction, that corner goes on
-without sliding, and upwards with e times the speed 2 b omega of its approach, b being half the
-width. The moment of momentum about it is kept: (4/3) R^2 (omega - omega') = 2 b^2 (1 + e) omega,
-so that omega'/omega = 1 - (3/2) (1 + e) sin(alpha)^2, which for e = 0 is Housner's. The other
-corner leaves the base upwards as long as sin(alpha)^2 < 2/3, so that there is no impulse on it.
-"""
+"""A block that strikes its base with a corner: which coefficient of restitution an engine gives."""
+# The corner goes on without sliding, upwards with e times the speed 2 b omega of its approach. The
+# moment of momentum about it is kept: (4/3) R^2 (omega - omega') = 2 b^2 (1 + e) omega, so that
+# omega'/omega = 1 - (3/2) (1 + e) sin(alpha)^2; the other corner lifts if sin(alpha)^2 < 2/3.
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def sheet(
 def panels(
     count: int, across: int, each: tuple[float, float], extra: float, **shared: Any
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure of panels, so many side by side, of a size, with `extra` above and below [in]."""
+    """Return a figure of panels, so many side by side, of a size [in] with `extra` above them."""
     across = max(min(across, count), 1)
     down = max(math.ceil(count / across), 1)
     # title and key of one panel need some width

@@ -2,38 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from types import ModuleType
+from typing import Annotated, Any
 
-import pandas as pd
 from cyclopts import Parameter
 
 from studies.cases.refusal import BadInputError
 from studies.experiments import cubes, rocks
 from studies.kit.jobs import Job, Row
-from studies.kit.study import Figures, Study, Tables, stages
+from studies.kit.study import Study, stages
 
 BODIES = {"rocks": rocks, "cubes": cubes}
 
 
-@Parameter(name="*")
+ROCKS = "Folder of 490 shake-table tests: a clone of ZhiangChen/virtual_shake_robot_pybullet."
+CUBES = (
+    "Folder of 550 tosses (*.pt): cleaned_cube_trajectories/data in examples of DAIRLab/dairlib, "
+    "branch contact_model_verification."
+)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Which measurements.
+    """Which measurements."""
 
-    Attributes
-    ----------
-    rocks
-        Folder of 490 shake-table tests: a clone of ZhiangChen/virtual_shake_robot_pybullet.
-    cubes
-        Folder of 550 tosses (*.pt): cleaned_cube_trajectories/data in examples of
-        DAIRLab/dairlib, branch contact_model_verification.
-    """
-
-    rocks: str | None = None
-    cubes: str | None = None
+    rocks: Annotated[str | None, Parameter(help=ROCKS)] = None
+    cubes: Annotated[str | None, Parameter(help=CUBES)] = None
 
 
 def jobs(sources: Sequence[str], _: bool, options: Options) -> list[Job]:
@@ -46,38 +42,14 @@ def jobs(sources: Sequence[str], _: bool, options: Options) -> list[Job]:
     return found
 
 
-def _bodies(names: Collection[str]) -> ModuleType:
-    """Return whose measurements some tables or columns are."""
-    return cubes if "settings" in names else rocks
-
-
 def measure(job: Job) -> Row:
     """Return what a source makes of a measured motion."""
-    row: Row = _bodies(job.labels).measure(job)
-    return row
+    return cubes.measure(job) if "settings" in job.labels else rocks.measure(job)
 
 
-def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return the tables of the measurements that were asked."""
-    tables: Tables = _bodies(rows.columns).tabulate(rows)
-    return tables
-
-
-def finding(tables: Tables) -> str:
-    """Say what they show."""
-    return str(_bodies(tables).finding(tables))
-
-
-def shown(tables: Tables) -> Tables:
-    """Return what is printed of them."""
-    found: Tables = _bodies(tables).shown(tables)
-    return found
-
-
-def figures(tables: Tables) -> Figures:
-    """Draw them."""
-    drawn: Figures = _bodies(tables).figures(tables)
-    return drawn
+def _of(stage: str) -> Callable[[Any], Any]:
+    """Return a stage, of whichever measurements some rows or tables are."""
+    return lambda found: getattr(cubes if "settings" in found else rocks, stage)(found)
 
 
 STUDY = Study(
@@ -96,6 +68,10 @@ hour. Name one folder.""",
         "cubes": "Mean loss of the tosses that no fit has seen, within 95 %, and the part of them "
         "that ends on the right face.",
     },
-    **stages(jobs, measure, tabulate, finding, shown, figures),
+    **stages(jobs, measure),
+    tabulate=_of("tabulate"),
+    finding=_of("finding"),
+    shown=_of("shown"),
+    figures=_of("figures"),
 )
 command = STUDY.command()

@@ -1,9 +1,6 @@
-"""550 cubes tossed on a board: engines' worlds for them, and how far they are off.
-
-The tosses are those of github.com/DAIRLab/contact-nets (BSD-3), cleaned in the branch
-contact_model_verification of github.com/DAIRLab/dairlib (Acosta et al. 2022); nothing of them is
-kept here. Velocities at the start are fitted to the flight, as there.
-"""
+"""550 cubes tossed on a board: engines' worlds for them, and how far they are off."""
+# The tosses are those of github.com/DAIRLab/contact-nets (BSD-3), cleaned by Acosta et al. (2022);
+# nothing of them is kept here. Velocities at the start are fitted to the flight, as there.
 
 from __future__ import annotations
 

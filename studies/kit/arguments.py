@@ -239,19 +239,18 @@ class Computing:
             refuse_given({"jobs": self.jobs}, "only without --cluster")
 
 
+ALSO = (
+    "Further folders of the same command's results, such as those of engines that are installed "
+    "elsewhere; their rows are added."
+)
+
+
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Running(Computing):
-    """Where a study's jobs run, and which of its rows there are already.
+    """Where a study's jobs run, and which of its rows there are already."""
 
-    Attributes
-    ----------
-    also
-        Further folders of the same command's results, such as those of engines that are installed
-        elsewhere; their rows are added.
-    """
-
-    also: Annotated[tuple[Place, ...] | None, several_or_none] = None
+    also: Annotated[tuple[Place, ...] | None, several_or_none, Parameter(help=ALSO)] = None
 
 
 @Parameter(name="*")

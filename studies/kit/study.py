@@ -27,14 +27,8 @@ Tables: TypeAlias = "Mapping[str, pd.DataFrame]"
 """Tables by the names of their files, without .csv."""
 Figures: TypeAlias = "Mapping[str, Figure]"
 """Figures by the names of their files."""
-
-
 SHARED = Parameter(show=False)
 """What marks the options that `rocking help run` explains, once for all studies."""
-
-
-def _nothing(tables: Tables) -> Mapping[str, Any]:
-    return {}
 
 
 def stages(*functions: Callable[..., Any]) -> dict[str, Any]:
@@ -57,8 +51,10 @@ class Study:
     split: str = ""  # a label whose values are tables: `tabulate` then takes the rows of each
     tabulate: Callable[[Any], Tables]  # of its rows
     finding: Callable[[Tables], str]  # what its tables show, in a sentence
-    shown: Callable[[Tables], Tables] = _nothing  # short tables beside the finding, by their titles
-    figures: Callable[[Tables], Figures] = _nothing
+    shown: Callable[[Tables], Tables] = (
+        lambda _: {}
+    )  # short tables beside the finding, by their titles
+    figures: Callable[[Tables], Figures] = lambda _: {}
     captions: Mapping[str, str] = field(default_factory=dict)  # by the beginning of a figure's name
     needed: Callable[[Sequence[Row]], Sequence[Row]] = tuple  # rows whose failure is the study's
     texts: tuple[str, ...] = ()  # columns of words that may look like numbers

@@ -201,13 +201,9 @@ def _made(folder: Path) -> list[tuple[str, str]]:
 
 
 def engine_cases(folder: Path) -> dict[str, Any]:
-    """Return the peaks of the exact solution and of engines on a grid of pulses and blocks.
-
-    Of each of AXES its values; peaks: source -> the peaks of all cases in their order, -1 where it
-    overturns, None where it failed; judged: of each case 1, or 0 where the block would slide or
-    lift off; rests: for how long all is at rest before the pulse [s]; written: the sources that
-    `rocking export` writes out, engines with equal steps.
-    """
+    """Return the peaks of the exact solution and of engines on a grid of pulses and blocks."""
+    # peaks: -1 where a block overturns, None where a run failed; judged: 0 where it would slide or
+    # lift off; written: the sources that `rocking export` writes out
     rows = table_in(folder / "defaults", "defaults")
     if rows.empty:
         return {"peaks": {}}

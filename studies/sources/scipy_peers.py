@@ -101,8 +101,8 @@ class _March:
 
     def _stretch(self, j: int, tau: float, y: float, v: float, side: float) -> Any:
         """Integrate to the next impact, breakpoint or decision."""
-        # 60/p of free rocking decide: a fall takes -ln(1e-16) = 37 at most; the first step out of an
-        # impact is a tenth of the excursion, 2 v / y'', which a longer one would step over
+        # 60/p of free rocking decide: a fall takes at most -ln(1e-16) = 37; the first step out of
+        # an impact is a tenth of the excursion, 2 v / y'', which a longer one would step over
         law, rows = self.posed.laws[0], self.posed.segments[j : j + 1].tolist()
         end = rows[0][1] if rows else min(self.until, tau + 60.0)
         decides = not rows and self.until == math.inf
