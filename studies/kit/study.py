@@ -51,9 +51,7 @@ class Study:
     split: str = ""  # a label whose values are tables: `tabulate` then takes the rows of each
     tabulate: Callable[[Any], Tables]  # of its rows
     finding: Callable[[Tables], str]  # what its tables show, in a sentence
-    shown: Callable[[Tables], Tables] = (
-        lambda _: {}
-    )  # short tables beside the finding, by their titles
+    shown: Callable[[Tables], Tables] = lambda _: {}  # short tables, by their titles
     figures: Callable[[Tables], Figures] = lambda _: {}
     captions: Mapping[str, str] = field(default_factory=dict)  # by the beginning of a figure's name
     needed: Callable[[Sequence[Row]], Sequence[Row]] = tuple  # rows whose failure is the study's

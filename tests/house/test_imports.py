@@ -72,7 +72,6 @@ def test_an_answer_at_once_loads_nothing_that_it_does_not_need(arguments, tmp_pa
 
 
 def test_no_help_loads_a_table_a_plot_or_an_engine():
-    """Neither that of all commands, which comes first, nor that of each."""
     told = told_by(["--help"], *([name, "--help"] for name in COMMANDS))
     assert {name: loaded & set(EACH) for name, loaded in told.items() if loaded & set(EACH)} == {}
 
@@ -102,7 +101,6 @@ ALLOWED = (
 
 
 def test_an_adapter_that_would_see_the_answer_is_named(tmp_path):
-    """The contract that a linter keeps, in a copy in which each way around it is tried."""
     for name in PACKAGES:
         ignored = shutil.ignore_patterns("__pycache__", "published")
         shutil.copytree(ROOT / name, tmp_path / name, ignore=ignored)

@@ -27,7 +27,6 @@ AWAY = set(ENGINES) - set(installed_engines())
 
 
 def asked_here(table):
-    """Return the rows of sources that can be asked: all but engines that are not installed."""
     return table[~table["source"].str.partition(":")[0].isin(AWAY)]
 
 
@@ -59,7 +58,6 @@ def test_a_published_row_is_what_comes_out_today(row):
 
 @pytest.mark.parametrize("name", ["sweep", "presets"])
 def test_nothing_is_computed_again_in_a_published_folder(name, tmp_path):
-    """Its rows are those that the code of today would make."""
     folder = shutil.copytree(PUBLISHED / name, tmp_path / name)
     (part,) = (part for part in PARTS if part.folder == name)
     sources = tuple(provenance_of(folder)["made"])

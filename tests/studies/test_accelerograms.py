@@ -43,7 +43,6 @@ def shaken(folder, offset):
 
 
 def told(path, capsys, *options):
-    """Return the rows of each source, and the text, in which a note is said once."""
     code, rows = compared(capsys, *ASKED, path, *options)
     assert code == run(["compare", *ASKED, str(path), *options]) == 0
     (message,) = {row["message"] for row in rows.values()}
@@ -52,7 +51,6 @@ def told(path, capsys, *options):
 
 
 def test_a_velocity_that_does_not_end_at_zero_is_reported(tmp_path, capsys):
-    """An offset of 0.01 g for 2 s is 0.1962 m/s. It is said, and nothing is changed."""
     path = shaken(tmp_path, 0.01)
     for options in ([], ["--baseline", "none"]):
         assert "velocity ends at 0.196 m/s, 0.21 of its largest" in told(path, capsys, *options)[1]
@@ -61,7 +59,6 @@ def test_a_velocity_that_does_not_end_at_zero_is_reported(tmp_path, capsys):
 
 @pytest.mark.parametrize("baseline", ["constant", "linear"])
 def test_a_baseline_is_corrected_by_a_named_method(baseline, tmp_path, capsys):
-    """As SciPy's detrend does, before the record is scaled; and the answer says so."""
     path, options = shaken(tmp_path, 0.03), ["--baseline", baseline, "--pga", "0.35"]
     left = detrend(read_record(path).samples, type=baseline)
     record = Record(dt=0.005, samples=left).scaled_to(0.35 * GRAVITY)
@@ -73,7 +70,6 @@ def test_a_baseline_is_corrected_by_a_named_method(baseline, tmp_path, capsys):
 
 @pytest.fixture
 def written(tmp_path):
-    """Return what writes a text into a file, its line ends as they are."""
 
     def write(text, name="motion.txt"):
         path = tmp_path / name
@@ -151,7 +147,6 @@ ALONE = {
 
 @pytest.mark.parametrize("text", [*TABLES, *ALONE])
 def test_tables_that_leave_no_doubt_and_samples_alone_with_their_step(text, written):
-    """The step is given, or stands with the number of samples above them."""
     path = written(text)
     record = read_record(path, "g", None, ALONE[text]) if text in ALONE else read_record(path)
     assert record.dt == 1.0
@@ -185,7 +180,6 @@ def test_times_printed_in_few_decimals_are_equal_steps(written):
     form=st.sampled_from(["at2", "asc", "comma", "semicolon", "blank"]),
 )
 def test_what_is_written_is_read(samples, unit, columns, end, form, tmp_path_factory):
-    """Any samples in any form, unit and layout, to the last digit that is printed."""
     words = [repr(sample) for sample in samples]
     count = len(samples)
     if form == "at2":
@@ -321,7 +315,6 @@ EDITS = st.lists(st.tuples(st.integers(0, 600), st.integers(0, 9), st.text(MARKS
     units=st.sampled_from([None, "g", "cm/s2"]),
 )
 def test_whatever_a_file_holds_it_is_a_record_or_refused(content, edits, units, tmp_path_factory):
-    """A file of any bytes, or a good one with some of its characters changed."""
     if isinstance(content, str):
         for begin, length, text in edits:
             content = content[:begin] + text + content[begin + length :]
@@ -349,7 +342,6 @@ LONG = [
 
 @pytest.mark.parametrize(("content", "words"), LONG, ids=["AT2", "ASC", "rows", "size"])
 def test_a_file_that_is_too_long_is_refused_at_once(content, words, tmp_path, capsys):
-    """By what its header says, by its words, or by its size."""
     path = tmp_path / "long.AT2"
     path.write_bytes(b"" if isinstance(content, int) else content)
     if isinstance(content, int):

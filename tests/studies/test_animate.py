@@ -26,7 +26,6 @@ def few_frames(monkeypatch):
 
 
 def drawn(panel):
-    """Return the corners of the bodies in a panel, apart from its ground."""
     bodies = [found for found in panel.collections if isinstance(found, PolyCollection)]
     return [path.vertices[:4] for found in bodies for path in found.get_paths()]
 

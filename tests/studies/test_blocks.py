@@ -182,7 +182,6 @@ def test_a_list_is_read_as_spreadsheets_write_it(text, tmp_path):
 
 
 def test_several_records_of_all_kinds_make_a_fragility(place, capsys):
-    """A column without unit or step, a table and an AT2 file, that state theirs; scaled alike."""
     other, third = noise(7, 600, 0.01, 3.0), noise(8, 600, 0.01, 4.0)
     rows = [f"{0.01 * at:.2f},{a!r}\n" for at, a in enumerate(other.samples.tolist())]
     (place / "o.csv").write_text("time_s,acceleration_m_s2\n" + "".join(rows))

@@ -31,7 +31,6 @@ PATIENCE_S = 120.0
 
 @contextmanager
 def scheduler(folder):
-    """Start a scheduler; yield its address."""
     place = folder / "scheduler.json"
     options = ["--port", "0", "--no-dashboard", "--scheduler-file", str(place)]
     with started("scheduler", *options):
@@ -40,18 +39,13 @@ def scheduler(folder):
         yield json.loads(place.read_text())["address"]
 
 
-@contextmanager
 def working(address, nanny="--no-nanny", **environment):
-    """Start a worker; yield its process."""
-    with started(
-        "worker", address, nanny, "--nthreads", "1", "--no-dashboard", **environment
-    ) as it:
-        yield it
+    options = ("--nthreads", "1", "--no-dashboard")
+    return started("worker", address, nanny, *options, **environment)
 
 
 @contextmanager
 def started(*words, **environment):
-    """Start a process of Dask, and end it afterwards."""
     known = {**os.environ, "PYTHONPATH": KNOWN, **environment}
     process = subprocess.Popen([*DASK, *words], env=known, stderr=subprocess.DEVNULL)
     try:
@@ -62,7 +56,6 @@ def started(*words, **environment):
 
 
 def wait_for_workers(address, count):
-    """Wait until a scheduler has so many workers."""
     with Client(address, set_as_default=False) as client:
         client.wait_for_workers(count, timeout=PATIENCE_S)
 
@@ -73,7 +66,6 @@ def jobs_of(*sources):
 
 @pytest.fixture(scope="module")
 def station(tmp_path_factory):
-    """The address of a scheduler with two workers."""
     with ExitStack() as stack:
         address = stack.enter_context(scheduler(tmp_path_factory.mktemp("station")))
         for _ in range(2):

@@ -26,7 +26,6 @@ NEEDED = simulate(BLOCK, PULSE).friction_needed
 
 
 def text_of(capsys, *options, code=0):
-    """Run a comparison and return its text."""
     capsys.readouterr()
     assert run(["compare", *map(str, options)]) == code
     return capsys.readouterr().out
@@ -86,7 +85,6 @@ def test_the_text_fits_the_screen_and_has_the_columns_of_json(capsys, tmp_path):
 
 
 def test_a_block_is_released_from_a_tilt_in_units_of_alpha(capsys):
-    """Its first impact comes after a quarter period, the same in every source."""
     options = ["--tilt", "-0.6", "--duration", "2", "--sources"]
     _, found = compared(capsys, *CASE[:4], *options, "exact", "dop853", "pybullet", "mujoco")
     rows = [*found.values()]

@@ -32,7 +32,6 @@ SETTINGS = [
 
 @pytest.fixture
 def rows():
-    """Rows of a small study of MuJoCo, whose errors and outcomes are known."""
     found = [
         {
             **{"engine": "mujoco", "preset": preset, "factor": factor, "level": level},
@@ -138,7 +137,6 @@ def test_a_spring_that_only_pushes_gives_back_what_its_equation_says(ratio):
 @pytest.mark.parametrize("aspect", [1.5, 6.0])
 @pytest.mark.parametrize("wanted", [0.0, 0.3, 1.0])
 def test_what_a_block_keeps_is_what_impulses_on_its_corner_leave(aspect, wanted):
-    """The closed form, against two impulses that are solved for."""
     asked = job_of("mujoco", "spring and damper over 20 steps", wanted, aspect=aspect)
     row = measure(replace(asked, lost=Response.failure("it ended")))
     half_width, half_height = 0.5 / aspect, 0.5

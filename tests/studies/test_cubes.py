@@ -8,7 +8,7 @@ import pytest
 from commanding import refused
 from scipy.spatial.transform import Rotation
 
-from studies.experiments import STUDY, tabulate
+from studies.experiments import STUDY
 from studies.experiments.cubes import AUTHORS, HALF, HZ, SETTINGS, WORLDS, off, read_tosses
 from studies.kit.tables import packed
 
@@ -66,7 +66,7 @@ def test_fitted_settings_are_told_of_tosses_that_no_fit_has_seen():
          "found": packed(np.array([[it, 0.001, np.pi, it > 1.0] for it in each]))}
         for name, each in losses.items()
     ]  # fmt: skip
-    lines = tabulate(pd.DataFrame(rows))["settings"].set_index("settings")
+    lines = STUDY.tabulate(pd.DataFrame(rows))["settings"].set_index("settings")
     assert lines.index.tolist() == ["default", "fitted"]
     found = lines.loc["fitted", ["tosses", "loss", "place_mm", "angle_deg", "face", "loss_of_all"]]
     assert found.tolist() == [3, 2.0, 1.0, 180.0, 1.0, 1.25]
@@ -75,7 +75,6 @@ def test_fitted_settings_are_told_of_tosses_that_no_fit_has_seen():
 
 def test_another_folder_is_refused(tosses, tmp_path, capsys):
     asked = ["experiments", "--out", tmp_path / "out"]
-    refused(capsys, asked, "--rocks", "--cubes")
     refused(capsys, [*asked, "--cubes", tmp_path / "none"], "--cubes", "none")
     refused(capsys, [*asked, "--cubes", tosses, "--sources", "dart"], "dart", "mujoco")
     (tosses / "3.pt").write_text("no zip")

@@ -15,7 +15,6 @@ from studies.sources.registry import SOURCES, Source
 
 
 def diagnosed(capsys, monkeypatch, *here):
-    """Return the exit code, and the lines that are well and those that are not."""
     monkeypatch.setattr(doctor, "installed_engines", lambda: here)
     code, lines = run(["doctor"]), capsys.readouterr().out.splitlines()
     failing = [line for line in lines if line.startswith("FAIL  ")]

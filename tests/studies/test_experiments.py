@@ -10,7 +10,7 @@ from commanding import refused
 
 from studies.__main__ import run
 from studies.cases.rocks import DT, FELL, MESHES, TABLE, TUNED, read_mesh, read_motion, read_tests
-from studies.experiments import STUDY, tabulate
+from studies.experiments import STUDY
 from studies.experiments.rocks import FACTORS, GRID
 
 SPACE = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
@@ -90,7 +90,7 @@ def test_shares_are_those_of_what_the_rows_say():
     for rock in MESHES:
         rows.append(pd.DataFrame(found | {"rock": rock, "block": "margin"}))
         rows.append(pd.DataFrame(base | {"rock": rock, "block": "x", "outcome": "failed"}))
-    tables = tabulate(pd.concat(rows))
+    tables = STUDY.tabulate(pd.concat(rows))
     shares = tables["shares"].set_index(["rock", "source"])
     assert shares.loc[1, "share"].tolist() == [0.9, 1.0, 0.75, 0.0, 0.9, 1.0]
     line = shares.loc[(1, "exact")]

@@ -24,7 +24,6 @@ LOADED = {
 
 @pytest.fixture
 def announced(alone, monkeypatch, tmp_path):
-    """Work in a new folder; let what is announced be forgotten."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
 

@@ -33,14 +33,12 @@ CASES = {"well conditioned": bursts(2, 0.05), "less well": bursts(1, 0.08)}
 
 
 def condition(record, part=1e-6):
-    """Return the relative change of the peak over that of the record."""
     low, high = (simulate(BLOCK, record.scaled(1.0 + side * part)) for side in (-1.0, 1.0))
     return abs(math.log(high.peak_ratio / low.peak_ratio)) / (2.0 * part)
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_block_that_rests_and_rises_dozens_of_times(case):
-    """The reference holds, mirrors, and steps over no sample while it rocks."""
     record = CASES[case]
     exact = simulate(BLOCK, record)
     assert record.samples.size == 20_000

@@ -17,7 +17,6 @@ WINDOW = Window(columns=12, rows=60, low=0.3, high=6.0)
 
 @pytest.fixture(scope="module")
 def tables():
-    """Return the tables of a small map of two models."""
     jobs = overturning.map_jobs(("housner",), WINDOW)
     return overturning.tabulate(pd.DataFrame(run(jobs, overturning.measure)))
 
@@ -75,7 +74,6 @@ def test_engines_are_asked_on_planes_alone_and_beside_maps_of_models():
 
 @pytest.fixture(scope="module")
 def exact():
-    """Return the rows of the exact solution on the quick planes."""
     return pd.DataFrame(run(overturning.plane_jobs(("exact",), True), overturning.measure))
 
 

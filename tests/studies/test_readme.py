@@ -32,7 +32,6 @@ def test_a_page_says_what_the_published_tables_say(name, pages):
 
 
 def test_the_pages_follow_their_tables(pages, tmp_path):
-    """A number changes with the table that it comes from."""
     copy = tmp_path / readme.PUBLISHED
     shutil.copytree(PUBLISHED, copy)
     for path in (copy / "sweep" / "summary.csv", copy / "presets" / "summary.csv"):
@@ -73,7 +72,6 @@ def test_what_helps_has_a_price(tmp_path):
 
 
 def test_the_first_run_and_a_later_one_are_timed_apart():
-    """One that goes on where another stopped is neither."""
     later = {"runs": [run_of(False, 9, 9, 21.4), run_of(False, 9, 2, 3.0)]}
     first = {"runs": [run_of(True, 9, 9, 80.9)]}
     both = "81 s the first time, when its functions are compiled, and for 21 s later"
@@ -112,7 +110,6 @@ def slug(head):
 
 
 def test_the_first_picture_is_of_the_case_that_it_names():
-    """Figure 5-b of the paper: exact 0.3852, and Housner's linearization overturns."""
     lines = readme.summary(pd.read_csv(PUBLISHED / "hero" / "hero.csv")).set_index("source")
     assert lines.loc["exact", "peak_ratio"] == pytest.approx(0.3852, abs=5e-5)
     assert lines.loc["housner", "outcome"] == "overturned"
@@ -120,7 +117,6 @@ def test_the_first_picture_is_of_the_case_that_it_names():
 
 
 def commands(name):
-    """Return the commands that a page prints in its blocks, in their order."""
     blocks = re.findall(
         r"```(?:sh|yaml)\n(.*?)```", (ROOT / name).read_text(encoding="utf-8"), re.S
     )
@@ -147,7 +143,6 @@ QUICK = ("advise", "export", "blocks", "compare")
 
 @pytest.mark.parametrize("command", commands("README.md"))
 def test_a_command_of_the_readme_works_as_printed(command, tmp_path, monkeypatch, capsys):
-    """What takes a second is run; of the rest every argument is taken."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "studies").symlink_to(ROOT / "studies")
     _, *arguments = shlex.split(command)
@@ -160,7 +155,6 @@ def test_a_command_of_the_readme_works_as_printed(command, tmp_path, monkeypatch
 
 @pytest.mark.parametrize("name", PROSE)
 def test_a_command_within_a_page_is_taken(name):
-    """Whole ones; of a command alone its name."""
     text = (ROOT / name).read_text(encoding="utf-8")
     inside = [" ".join(found.split()) for found in re.findall("`(rocking [^`]*)`", text)]
     for command in (*inside, *(commands(name) if name != "README.md" else ())):
@@ -178,7 +172,6 @@ TABLES = sorted(PUBLISHED.glob("*/*.csv*"))
 
 
 def as_written(path):
-    """Return the head and the rows of a table, every cell a word."""
     opened = gzip.open if path.suffix == ".gz" else open
     with opened(path, "rt", newline="", encoding="utf-8") as file:
         head, *rows = csv.reader(file)
@@ -186,7 +179,6 @@ def as_written(path):
 
 
 def is_of(kind, cell):
-    """Return whether a cell can be read as what the dictionary says."""
     if kind == "text" or cell == "nan":
         return True
     if kind == "boolean":

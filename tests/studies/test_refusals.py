@@ -193,7 +193,6 @@ def words_of(line):
 
 @pytest.fixture
 def place(tmp_path, monkeypatch):
-    """Work in a folder with a list of blocks, a record, one that does not move, and a pipe."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "list.csv").write_text("name,width,height\nA,0.5,1.5\n")
     (tmp_path / "X.AT2").write_text(AT2["series"])
@@ -301,7 +300,6 @@ ODD = [
 
 
 def options_of(name):
-    """Return the options of a command, as its own declaration names them."""
     arguments = make_app(GROUPS, name)[name].assemble_argument_collection()
     names = [argument.name for argument in arguments if argument.name.startswith("--")]
     assert names
@@ -346,7 +344,6 @@ def give_up(call, tasks, workers, limit_s):
 
 
 def check(arguments):
-    """Run a command line; return what it writes on stderr."""
     written, told = io.StringIO(), io.StringIO()
     with (
         warnings.catch_warnings(),
@@ -384,7 +381,6 @@ def with_words(name, beginning, words):
 @pytest.mark.processes
 @pytest.mark.parametrize("name", OPTIONS)
 def test_a_command_line_in_order_gets_as_far_as_its_folder(name, site):
-    """Else what follows would test nothing but what stands before it."""
     if name not in BEGINNINGS:
         (beginning,) = beginnings(name)
         assert FULL in check([name, *beginning])
@@ -395,7 +391,6 @@ TEXT = st.sampled_from(ODD) | st.text(max_size=20) | st.floats().map(repr) | st.
 
 @st.composite
 def command_lines(draw):
-    """Draw a command, what it needs, and options of its own or others with any text."""
     name = draw(st.sampled_from(sorted(OPTIONS)))
     begin, words = draw(st.sampled_from(beginnings(name))), []
     for _ in range(draw(st.integers(1, 2))):

@@ -99,13 +99,8 @@ def test_the_engines_answers_are_those_of_the_tables():
     assert next(iter(held["peaks"])) == "exact"
     rows = pd.read_csv(PUBLISHED / "defaults" / "defaults.csv")
     cases = rows[rows["source"] == "mujoco:default"].reset_index(drop=True)
-    shown = dict(
-        zip(
-            itertools.product(*(held[name] for name in AXES)),
-            held["peaks"]["mujoco:default"],
-            strict=True,
-        )
-    )
+    places = itertools.product(*(held[name] for name in AXES))
+    shown = dict(zip(places, held["peaks"]["mujoco:default"], strict=True))
     assert len(shown) == len(cases) > 1000
     assert held["rests"] == list(cases["rest_s"])
     for case in cases.iloc[::97].itertuples():
@@ -150,21 +145,15 @@ def test_the_page_fits_its_window_and_sorts(made, tmp_path: Path, width):
     probed = tmp_path / "page.html"
     probed.write_text((made / "report.html").read_text().replace("</body>", PROBE + "</body>"))
     command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"]
-    done = subprocess.run(
-        [*command, f"--user-data-dir={tmp_path}", f"--window-size={width},900", probed.as_uri()],
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
+    command += [f"--user-data-dir={tmp_path}", f"--window-size={width},900", probed.as_uri()]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     seen = json.loads(re.search("<title>(.*)</title>", done.stdout)[1].replace("&quot;", '"'))
     assert seen["wide"] <= 0
     assert len(seen["column"]) > 1
     assert seen["column"] == sorted(seen["column"], reverse=True)
     for words, omega in ((seen["first"], 7.93185), (seen["then"], 12.5)):
-        peak = simulate(
-            BLOCK, SinePulse(amplitude=AMPLITUDE, omega=omega, half_cycles=2)
-        ).peak_ratio
-        assert f"{peak:.6f}" in words
+        pulse = SinePulse(amplitude=AMPLITUDE, omega=omega, half_cycles=2)
+        assert f"{simulate(BLOCK, pulse).peak_ratio:.6f}" in words
 
 
 ENGINE = "quickjs"  # it has no wheel for Python 3.13
@@ -286,7 +275,6 @@ def test_no_engine_takes_the_look_of_another():
 
 
 def words_of(drawing):
-    """Return the words written in a figure as it is laid out, with their boxes."""
     lay_out(drawing)
     drawing.draw_without_rendering()
     unseen = [

@@ -102,7 +102,6 @@ def test_random_cases_are_calm_or_slide_as_far_as_can_be_seen():
 
 
 def test_equal_steps_are_shifted_by_parts_of_a_step():
-    """The first impact falls a quarter of a step later in each."""
     asked = [
         job for job in jobs(["pymunk:tuned", "mujoco"], False) if job.labels["scene"] == "frame"
     ]

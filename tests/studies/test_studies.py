@@ -106,7 +106,6 @@ MISSED = {
 
 
 def within(name):
-    """Return the relative error of the peak of figure 5-b that a source may have."""
     source = resolve(name)
     if source.kind == "peer":
         # its relative tolerance is 1e-9, and the errors of some steps add up

@@ -118,7 +118,6 @@ def test_a_step_in_words_is_halved_as_a_number_and_a_model_has_none():
 
 
 def estimated(errors, differences, use=halving.CALIBRATE):
-    """Return the lines of estimates.csv for cases whose errors and estimates are given."""
     exact = respond("exact", BLOCK, PULSE).peak_ratio
     posed = {"aspect": 3.0, "half_cycles": 2, "amplitude_g": PULSE.amplitude / BLOCK.gravity}
     rows = [
@@ -218,7 +217,6 @@ def test_nothing_is_wrong_beside_no_reference():
 
 
 def test_a_summary_has_a_column_for_each_kind():
-    """Of an engine that is right once, and wrong in each kind; the last block must fall."""
     columns = ["outcome", "peak_ratio", "width_m", "omega_over_p"]
     found = [(ROCKED, 0.011, 0.5, 4.0), (REST_WORD, 0.0, 1.0, 4.0), (REST_WORD, 0.0, 0.5, 3.9)]
     found += [(FAILED, math.nan, 1.0, 3.9), (OVER, math.inf, 0.5, 3.8), (ROCKED, 0.5, 0.5, 0.1)]

@@ -33,7 +33,6 @@ LIMIT_S = 3.0
 
 @pytest.fixture(scope="module")
 def rows(alone_in_module, tmp_path_factory):
-    """Return the row of each hostile world, all of them run in the same two processes."""
     note = tmp_path_factory.mktemp("hostile") / "note"
     alone_in_module.setenv(hostile.NOTE, str(note))
     for world in SAID:
@@ -72,7 +71,6 @@ def test_what_an_engine_started_in_its_group_is_ended_with_its_process(rows):
 
 
 def runs(pid):
-    """Return whether a process is there, and has not ended unseen by its parent."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:
