@@ -140,10 +140,11 @@ def finding(tables: Tables) -> str:
     shares = (100.0 * lines["share"]).map("{:.1f}".format).unstack()
     block, rule, authors = map(listed, shares.loc[[EXACT, RULE, AUTHORS]].to_numpy())
     p = lines.loc[EXACT, ["p_rule", "p_authors"]].to_numpy().min()
+    said = "no difference beyond chance" if p > 0.05 else "they differ"
     return (
         f"The exact block with two fitted numbers predicts {block} % of what two rocks did in "
         f"{lines['tests'].max()} tests, two thresholds of PGA and PGV {rule} %, and the authors' "
-        f"model {authors} %: {'no difference beyond chance' if p > 0.05 else 'they differ'} (p {p:.2g})."
+        f"model {authors} %: {said} (p {p:.2g})."
     )
 
 
