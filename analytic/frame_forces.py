@@ -55,12 +55,10 @@ def frame_demands(
     spacing: float,
     depth: float,
 ) -> Demands:
-    """Return what the exact response of a frame asks of its contacts.
+    """Return what the exact response of a frame, as of `simulate`, asks of its contacts.
 
     Parameters
     ----------
-    frame, motion, start
-        As for `simulate`.
     spacing, depth : float
         Distance of the columns' middles, and depth of the beam [m].
 

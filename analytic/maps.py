@@ -48,15 +48,9 @@ def overturning_modes(
     restitution: ArrayLike | None = None,
     threads: int | None = None,
 ) -> Modes:
-    """Find whether and how sine pulses overturn blocks, on all cores.
+    """Find whether and how the pulses of `peak_ratios` overturn blocks, on all cores.
 
-    The inputs are broadcast a part at a time, so that beside them and the results no memory is
-    needed.
-
-    Parameters
-    ----------
-    alpha, amplitude_g, omega_over_p, half_cycles, model, restitution, threads
-        As in `peak_ratios`, with its errors.
+    Beside the inputs, broadcast a part at a time, and the results no memory is needed.
 
     Examples
     --------

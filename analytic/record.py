@@ -137,13 +137,7 @@ class Record:
             return Record(dt=self.dt, samples=finite("factor", factor) * self.samples)
 
     def scaled_to(self, peak: float) -> "Record":
-        """Return the record scaled to a largest absolute acceleration [m/s2].
-
-        Raises
-        ------
-        ValueError
-            If the peak is not positive and finite, or the record is zero throughout.
-        """
+        """Return the record scaled to a largest absolute acceleration [m/s2], more than 0."""
         if self.peak == 0.0:
             raise ValueError("the record is zero throughout; it cannot be scaled to a peak")
         return self.scaled(positive("peak", peak) / self.peak)
@@ -151,13 +145,8 @@ class Record:
     def detrended(self, kind: Literal["constant", "linear"]) -> "Record":
         """Return the record without its mean, or without the straight line that fits it best.
 
-        A least-squares fit to the samples, by `scipy.signal.detrend`. The first and the last sample
-        become jumps of the acceleration, and the velocity need not end at zero exactly.
-
-        Raises
-        ------
-        ValueError
-            If nothing but rounding is left.
+        By `scipy.signal.detrend`; ValueError if nothing but rounding is left. The first and the
+        last sample become jumps, and the velocity need not end at zero exactly.
         """
         from scipy.signal import detrend
 

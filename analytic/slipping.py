@@ -9,7 +9,6 @@ at most, so that every root is bracketed.
 import math
 import time
 from collections.abc import Callable, Iterator
-from functools import partial
 from itertools import groupby
 from typing import NamedTuple
 
@@ -145,21 +144,20 @@ def _follow(
 def _start(leg: Leg, length: float) -> tuple[float, float]:
     """Return when a block that stands starts to slide, and to which side; else the length and 0."""
     limit = leg.brake * (1.0 + EQUAL)
+
+    def excess(t: float) -> float:
+        return abs(leg.ground(t)) - limit
+
     if leg.slope == 0.0 and abs(leg.amplitude) + abs(leg.offset) <= limit:
         return length, 0.0
     low = 0.0
     for high in leg.crests(length):
-        if abs(leg.ground(low)) > limit:
+        if excess(low) > 0.0:
             return low, -math.copysign(1.0, leg.ground(low))
-        if abs(leg.ground(high)) > limit:
-            sign = math.copysign(1.0, leg.ground(high))
-            return _root(partial(_excess, leg, sign, limit), low, high), -sign
+        if excess(high) > 0.0:
+            return _root(excess, low, high), -math.copysign(1.0, leg.ground(high))
         low = high
     return length, 0.0
-
-
-def _excess(leg: Leg, sign: float, limit: float, t: float) -> float:
-    return sign * leg.ground(t) - limit
 
 
 def _stop(leg: Leg, length: float) -> tuple[float, float]:

@@ -101,8 +101,8 @@ def announce(place: str, name_of: Callable[[str], str] = named) -> str:
 
 
 def _found(name: str, place: EntryPoint) -> object:
-    here = str(Path.cwd())
-    if _is_foreign(place) and place.dist is None and sys.path[0] != here:
+    here, own = str(Path.cwd()), __name__.partition(".")[0]
+    if place.module.partition(".")[0] != own and place.dist is None and sys.path[0] != here:
         sys.path.insert(0, here)  # no package announces it: it may stand in this folder
     try:
         return place.load()
@@ -111,10 +111,6 @@ def _found(name: str, place: EntryPoint) -> object:
     except BaseException as error:  # it is anybody's code
         words = f"cannot be loaded from {place.value}: {str(error) or type(error).__name__}"
         raise UnloadableError(f"engine {name!r} {words}") from error
-
-
-def _is_foreign(place: EntryPoint) -> bool:
-    return place.module.partition(".")[0] != __name__.partition(".")[0]
 
 
 @cache

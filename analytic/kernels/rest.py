@@ -155,20 +155,6 @@ def next_uplift(
     return len(segments), math.inf, 0.0, 0
 
 
-def time_to_rest(laws: Laws, side: float, v: float, a: float, weight: float = 1.0) -> float:
-    """Return how long [1/p] a block leaving the base rocks, by a geometric series; inf: no rest."""
-    this, other = law_of(laws, side), law_of(laws, -side)
-    here = -acceleration(this, side, a, 0.0, weight)
-    there = -acceleration(other, -side, a, 0.0, weight)
-    if here <= 0.0 or there <= 0.0:
-        return math.inf
-    if v == 0.0:
-        return 0.0
-    if this.eta * other.eta >= 1.0:
-        return math.inf
-    return 2.0 * v * (1.0 / here + this.eta / there) / (1.0 - this.eta * other.eta)
-
-
 def after_impact(
     laws: Laws, segments: FloatArray, j: int, tau: float, side: float, v: float
 ) -> tuple[float, float]:
@@ -177,19 +163,31 @@ def after_impact(
     A train of impacts is summed if it is shorter than ZENO, and the restoring accelerations change
     by less than a part ZENO in it.
     """
+    this, other = law_of(laws, side), law_of(laws, -side)
     now, heavy = ground(segments, j, tau), weight(segments, j, tau)
-    wait = time_to_rest(laws, side, v, now, heavy)
+    here = -acceleration(this, side, now, 0.0, heavy)
+    there = -acceleration(other, -side, now, 0.0, heavy)
+    wait = time_to_rest(here, there, this.eta, other.eta, v)
     end = tau + wait if wait < math.inf else tau
-    later = acceleration(
-        law_of(laws, side), side, ground(segments, j, end), 0.0, weight(segments, j, end)
-    )
-    here = acceleration(law_of(laws, side), side, now, 0.0, heavy)
-    there = acceleration(law_of(laws, -side), -side, now, 0.0, heavy)
-    change = abs(later - here)
-    if wait < ZENO and change <= ZENO * min(abs(here), abs(there)):
+    later = acceleration(this, side, ground(segments, j, end), 0.0, weight(segments, j, end))
+    if wait < ZENO and abs(later + here) <= ZENO * min(abs(here), abs(there)):
         return 0.0, wait
     # where no velocity is left the ground lifts the block again at once
     return side if v != 0.0 else -math.copysign(1.0, now), wait
+
+
+def time_to_rest(here: float, there: float, eta: float, other: float, v: float) -> float:
+    """Return how long [1/p] a block leaving the base rocks, by a geometric series; inf: no rest.
+
+    Excursions last 2 v/r with the restoring accelerations r, here and there in turn.
+    """
+    if here <= 0.0 or there <= 0.0:
+        return math.inf
+    if v == 0.0:
+        return 0.0
+    if eta * other >= 1.0:
+        return math.inf
+    return 2.0 * v * (1.0 / here + eta / there) / (1.0 - eta * other)
 
 
 ZENO = 1e-4
