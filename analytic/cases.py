@@ -18,8 +18,7 @@ from analytic.models import Model, find_model
 from analytic.simulate import OUTCOMES
 
 PART = 4096
-"""Cases that a core takes at a time: enough that handing them over costs nothing, and few enough
-that no core is left with much to do when the others are done."""
+"""Cases that a core takes at a time: handing them over costs nothing, and all end together."""
 MOST_THREADS = 1024
 
 

@@ -32,8 +32,7 @@ from analytic.start import REST
 SAMPLES = 4000
 """States looked at between begin and end of a response, beside those of its impacts."""
 FREE_TIME = 8.0
-"""Time [1/p] of free rocking after the motion that is looked at, beside the last and least swing:
-as swings grow smaller their demands approach that one's."""
+"""Time [1/p] of free rocking that is looked at, beside the last and least swing."""
 TINY = 1e-12
 """Rotation over alpha that stands for one side of an upright column."""
 

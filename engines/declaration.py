@@ -71,9 +71,8 @@ UNTUNED = ("default", AT_REST, RECOMMENDED, PASTED)
 """Names of the presets that are the library's own, or nearly."""
 
 REST_S = 0.2
-"""For so long [s] the ground is at rest in these before the motion, in equal steps: a body that was
-just put down carries no load yet, and what an engine makes of that is no error of its rocking. A
-block that begins leaning or moving is let go at once, as it would not stay so."""
+"""For so long [s] the ground is at rest in these before the motion, in equal steps: a body just put
+down carries no load yet. A block that begins leaning or moving is let go at once."""
 
 TITLES = {
     "default": "as its documentation shows it",

@@ -27,8 +27,7 @@ CORNER, BASE_DEPTH = 1e-3, 1e-2
 looked for from the middle of the base, the deeper that is, the more coarsely."""
 
 NOTHING = 1e-9
-"""A pull within this part of the weight is the weight: the rounding of a difference wakes a block.
-"""
+"""A pull within this part of the weight is the weight: a difference's rounding wakes a block."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

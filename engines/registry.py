@@ -14,8 +14,7 @@ from engines.declaration import Builder, Engine, Preset, landing
 from engines.settings import Settings, one_of, setting
 
 FURTHER = "ROCKING_ENGINES"
-"""Environment variable: engines that no package announces, as "name=module:ENGINE" with blanks
-between, known to this process and to those that it starts."""
+"""Environment variable: engines that no package announces, as "name=module:ENGINE name=..."."""
 
 GROUP = "rocking.engines"
 """Entry points of other packages in this group are engines: name -> "module:ENGINE"."""

@@ -44,11 +44,9 @@ SLIDING: dict[str, Any] = {
     "damping": 1e3,
     "impratio": 1e6,
 }
-"""Where a block slides. "The only way to initiate slip is to generate some motion in the normal
-direction" (computation/index.rst, "Physical realism and soft contacts"): in a stiff contact mu v,
-which throws the block off. The impedance decides which part of that acts, here the least that the
-library takes; the reference makes up for it, with k dt^2 0.01 and b dt 0.1. It is too soft for a
-block that rocks (`FACTORS`)."""
+"""Where a block slides. A stiff contact initiates slip by a motion mu v in the normal direction
+(computation/index.rst, "Physical realism and soft contacts"), which throws the block off. Of that
+the least impedance acts here; the reference makes up for it, with k dt^2 0.01 and b dt 0.1."""
 
 STEEP = "a pyramid this steep leaves too little normal force"
 ZERO = "one zero makes it the default, 0.02 s 1"

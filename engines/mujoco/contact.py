@@ -37,10 +37,9 @@ MOST_REFLECTION = 25.0
 a far shorter step that is noise."""
 
 MOST_GROWTH, RELEASED_GROWTH = 20.0, 80.0
-"""Where the block hardly turns, by how much faster it will turn is noise: a contact's velocity is
-returned as if it grew by no more than the first, in p dt a step. A released block gains speed
-steadily: nothing is returned until it grows by no more than the second. Any later, and the time
-until then is one without return, an error of first order."""
+"""By how much faster a block will turn is noise where it hardly turns: a velocity is returned as if
+it grew by no more than the first, in p dt a step. Of a released block nothing is returned until it
+grows by no more than the second: later would be an error of first order."""
 
 FREE, WELDED = 7, 6
 """Coordinates of a free joint, and the solver's rows of a weld, which come before the contacts'."""

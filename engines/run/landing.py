@@ -43,12 +43,10 @@ from engines.scene import Scene
 from engines.world import Choice, ContactPhase, Moment, Pose, Resolution
 
 SWING_PART, LOAD_PART = 8.0, 4.0
-"""A swing between impacts, and a load, during which the base can lift a block at rest, are resolved
-as finely as the time 1/p over these by ordinary steps."""
+"""A swing, and a load that can lift a block at rest, are resolved as finely as 1/p over these."""
 
 COARSEST, LEAST_LOAD = 1.0 / 6.0, 0.02
-"""Either is taken in steps no longer than this part of it, and a load in ones no shorter than this
-part of the ordinary step."""
+"""Neither is taken in longer steps than this part of it, nor a load in shorter than this of dt."""
 
 SHORTEST_SWING = 1e-4
 """A swing that would last no longer than this, in units of 1/p, is left to come to rest."""
@@ -63,17 +61,14 @@ would stop the block in a step; engines take what is much larger for a failure."
 
 UPLIFT_PART, UPLIFT_NEAR = 1.0 / 32.0, 2e-3
 """A block at rest takes steps of this part of the time until the base can lift it, each longer than
-the one before by this part at most: a sudden change would let go of a corner, or leave it as low as
-a long step presses it. An uplift is near when less than this part of the ordinary step is left."""
+the one before by this part at most: a sudden change would let go of a corner."""
 
 STRIKES, MOST_STRIKES, SETTLED = 4, 12, 1e-6
-"""Steps through an impact at least and at most, in which the contact takes its effect; it is over
-when a step changes the angular velocity by less than this part of it."""
+"""Steps through an impact, at least and at most; it is over when one changes the rate by less."""
 
 FIRST_PART = 0.02
-"""The first step after an impact, or of a run that begins aloft, is this part of the next ones: a
-contact that has just taken all velocity out of its point lets that rise by the square of the step.
-"""
+"""The first step aloft is this part of the next ones: a contact that has just taken all velocity
+out of its point lets that rise by the square of the step."""
 
 TOUCHING = 1e-9
 """A corner lower above the base than this part of the width touches it."""

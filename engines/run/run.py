@@ -18,8 +18,7 @@ from engines.scene import Scene
 from engines.world import UNLIMITED, FloatArray, Resolution, World
 
 LAG, YAW = "floor_lag_m", "yaw_deg"
-"""Observables: how far [m] a base that moves was from where it should have been, at most; how far
-[degrees] the first body has turned about the vertical in the end, where it is free to."""
+"""Observables: how far [m] a moving base was from its place at most; the first body's yaw."""
 
 LOOK_AROUND = 256
 """Steps between two looks at the clock, and at what the engine knows to have gone wrong."""

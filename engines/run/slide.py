@@ -21,9 +21,8 @@ STILL_TIME, TREMORS = 0.05, 20.0
 where it is, after this many times as long."""
 
 LEAST_LIFT = 1e-4
-"""A box is thrown off, and slides flat no longer, when it rises by more than this part of its width
-and than its contact gives way, or holds it above the base by a skin. It rises from there or from
-the base: from the lowest place after the time in which a tremor ends, or the last one before."""
+"""A box is thrown off when it rises by more than this part of its width and than its contact gives
+way, or holds it above the base, from the lowest place after a tremor's time."""
 
 STOP, DISTANCE, SINCE = range(3)
 """Columns of slips: the end [s], the distance with its sign [m], the beginning [s]."""

@@ -25,34 +25,29 @@ SHORTENED = 0.7
 even steps up to the next corner of the motion differ by less."""
 
 LIFT_WIDTHS, LIFT_FALL = 1e-8, 1e-3
-"""A block has lifted when its free corner is higher above the base than this part of the width, or
-than the length that the engine's numbers tell apart, and this part of g dt^2, twice the way fallen
-in one step, which no engine resolves; and the depth to which the contact was seen to give way under
-the resting block, and twice the height to which the pivot of the last swing hopped, by the
-curvature of its steps. It is above the noise of a tuned contact at rest and below the smallest lift
-of interest."""
+"""A block has lifted when its free corner is higher than this part of the width, or than the
+engine's resolution, and this part of g dt^2, twice the way fallen in one step; and than the contact
+was seen to give way at rest, and twice what the pivot hopped in the last swing, by the curvature of
+its steps. It is above the noise of a tuned contact and below the smallest lift of interest."""
 
 FALL_PART, FALL_STEPS = 0.5, 2.0
-"""A block that leans in a soft contact comes back as its load does; one that rocks falls back with
-more than this part of the squared rate that its weight gives it on the way to upright, and in more
-than so many steps: a shorter fall is not told from a tremor of the contact."""
+"""A block that leans comes back as its load does; one that rocks falls back with more than this
+part of the squared rate that its weight gives it, in more than so many steps: no tremor does."""
 
 HOVER_WIDTHS = 1e-3
 """A contact that holds a block at rest higher above the base than this part of the width, and by
 more than it leans, has a skin: such a block has not lifted."""
 
 REST_TIME, REST_RATE = 0.05, 0.01
-"""A block at rest has not lifted for this time, in units of 1/p, and turns no faster than this, in
-units of p alpha."""
+"""A block at rest has not lifted for this time [1/p], nor turned faster than this [p alpha]."""
 
 SLIDE_WIDTHS, THROWN_WIDTHS = 0.1, 1.0
 """A pivot that slides further than this part of the width has left the problem, and one higher
 above the base than this has been thrown off it."""
 
 HOLD_WIDTHS = 0.01
-"""A pivot that slides further than this part of the width does not hold, as steps that land on
-impacts assume: with a friction that a scene asks for such a run fails, and all others say so. Where
-it holds it slides by 1.1e-4 at most in the paper's cases."""
+"""A pivot that slides further than this part of the width does not hold, as steps that land
+assume. Where it holds it slides by 1.1e-4 at most in the paper's cases."""
 
 SINK_WIDTHS = 0.05
 """Of a corner deeper in the base than this part of the width a reader should know."""
