@@ -34,7 +34,8 @@ def solve_cases(
     """Solve the cases of `peak_ratios` part by part; return arrays of the types in `outputs`.
 
     `take` writes them, given cases (5, n): alpha, amplitude, omega/p, half cycles, eta; constants
-    (5, n) of `Model.constants`; ends (8, n), as in `End`, but for the peak of both sides.
+    (5, n) of `Model.constants`; ends (8, n), as in `End`, but for the peak of both sides, which is
+    sought `above` a rotation [rad].
     """
     declared, eta = find_model(model), 0.0 if restitution is None else restitution
     columns = np.broadcast_arrays(*given, eta)

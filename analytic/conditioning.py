@@ -32,7 +32,7 @@ Solve = Callable[[float, float], tuple[Any, Any]]
 
 
 class Conditioning(NamedTuple):
-    """d ln(peak)/d ln(a_p) and d ln(peak)/d ln(eta), nan where no peak is survived."""
+    """d ln(peak)/d ln(a_p) and d ln(peak)/d ln(eta), nan unless the block rocks and survives."""
 
     amplitude: FloatArray
     restitution: FloatArray

@@ -89,7 +89,7 @@ def frame_demands(
 
 
 class Push(NamedTuple):
-    """Forces over m_c g, or impulses, of a column and its share of the beam; z as above."""
+    """Forces over m_c g, or impulses, of a column and its share of the beam (see above)."""
 
     side: FloatArray
     z: FloatArray

@@ -222,7 +222,7 @@ UNDECIDED = -1
 
 
 def verdict(law: Law, path: Cubic, free: bool) -> int:
-    """Return whether a block is ROCKED or OVERTURNED or UNDECIDED; `free` if no ground moves it."""
+    """Return whether a block is ROCKED, OVERTURNED or UNDECIDED; `free` if no ground moves it."""
     y, v = path.end, path.rate
     if y >= LYING or (free and y > law.saddle and v >= 0.0):
         return OVERTURNED

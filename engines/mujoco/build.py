@@ -252,7 +252,7 @@ def _row(numbers: tuple[float, ...] | list[float]) -> str:
 
 
 class MujocoWorld:
-    """Bodies on a plane or, where the base moves, a box that is welded or has the velocity."""
+    """Bodies on a plane or, where the base moves, a box that is welded or has its velocity."""
 
     def __init__(self, scene: Scene, settings: MujocoSettings, dt_s: float) -> None:
         self.settings = s = settings.fitted(scene)

@@ -64,7 +64,7 @@ UPLIFT_PART, UPLIFT_NEAR = 1.0 / 32.0, 2e-3
 the one before by this part at most: a sudden change would let go of a corner."""
 
 STRIKES, MOST_STRIKES, SETTLED = 4, 12, 1e-6
-"""Steps through an impact, at least and at most; it is over when one changes the rate by less."""
+"""Steps through an impact, at least and at most; over once one changes the rate by less."""
 
 FIRST_PART = 0.02
 """The first step aloft is this part of the next ones: a contact that has just taken all velocity

@@ -18,7 +18,7 @@ from engines.scene import Scene
 from engines.world import UNLIMITED, FloatArray, Resolution, World
 
 LAG, YAW = "floor_lag_m", "yaw_deg"
-"""Observables: how far [m] a moving base was from its place at most; the first body's yaw."""
+"""Observables: how far [m] a moving base was off at most; the first body's yaw [degrees]."""
 
 LOOK_AROUND = 256
 """Steps between two looks at the clock, and at what the engine knows to have gone wrong."""

@@ -64,7 +64,7 @@ class Pace:
 def begin_pace(
     scene: Scene, dt_s: float, stepping: Stepping, moment: Moment, resolution: Resolution
 ) -> Pace:
-    """Return what steps begin with; only what rocks lands; dt_s [s] may be between two looks."""
+    """Return what the steps of a scene begin with, which land on impacts of what rocks alone."""
     lands = stepping is Stepping.LANDING and not scene.layout.rocking
     return Pace(
         policy=EVEN if lands else POLICIES.index(stepping),
