@@ -1,5 +1,7 @@
 """Two rocks on a shake table: their tests, read from a clone (GPL-3) that is not kept here."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -8,7 +10,6 @@ from zipfile import BadZipFile, ZipFile
 
 import numpy as np
 import pandas as pd
-from scipy.spatial import ConvexHull, QhullError
 
 from analytic.block import GRAVITY, RigidBlock
 from analytic.record import Record
@@ -28,6 +29,8 @@ CELL = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 @contextmanager
 def reading(path: Path, kind: str) -> Iterator[None]:
     """Refuse a file that is something else."""
+    from scipy.spatial import QhullError
+
     wrong = (OSError, ValueError, TypeError, LookupError, BadZipFile, QhullError)
     try:
         yield
@@ -78,6 +81,8 @@ def read_motion(path: Path) -> Record:
 
 def read_mesh(path: Path) -> list[RigidBlock]:
     """Return blocks of a mesh with its height and inertia: weak side right, left, on both sides."""
+    from scipy.spatial import ConvexHull
+
     # its sides are those of the footprint, across the edge next to the centre of mass
     with reading(path, "a mesh of triangles that stands on a face"):
         lines = [line.split() for line in path.read_text().splitlines()]

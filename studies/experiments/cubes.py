@@ -8,14 +8,11 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from zipfile import BadZipFile, ZipFile
 
 import numpy as np
 import pandas as pd
-from scipy.spatial.transform import Rotation
-from scipy.stats import binomtest
-from scipy.stats.qmc import Sobol
 
 from analytic.block import GRAVITY, RigidBlock
 from analytic.motion import SinePulse
@@ -27,6 +24,9 @@ from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import listed, one_line
 from studies.kit.study import Figures, Tables
 from studies.kit.tables import packed, unpacked
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 CLEANED = "the folder of the cleaned cube tosses (branch contact_model_verification of dairlib)"
 HALF, MASS, INERTIA, FRICTION = 0.0524, 0.37, 0.00081, 0.18
@@ -70,6 +70,8 @@ def _read_toss(path: Path) -> FloatArray:
 
 def turned(frames: FloatArray) -> Rotation:
     """Return the rotations of frames."""
+    from scipy.spatial.transform import Rotation
+
     return Rotation.from_quat(frames[..., [4, 5, 6, 3]])
 
 
@@ -171,6 +173,8 @@ DEFAULT, FITTED, CONE = "default", "fitted", "authors, elliptic cone"
 
 def jobs(sources: Sequence[str], folder: Path) -> list[Job]:
     """Return a job for each engine and settings."""
+    from scipy.stats.qmc import Sobol
+
     engines = [name for name in sources if name != "exact"] or [*WORLDS]
     if other := set(engines) - set(WORLDS):
         raise BadInputError(f"--sources is {sorted(other)[0]!r}; it may be {listed(WORLDS)}")
@@ -231,6 +235,8 @@ def tabulate(rows: pd.DataFrame) -> Tables:
 
 def told(found: FloatArray) -> Row:
     """Return the means of what is found of tosses, two of them within 95 %."""
+    from scipy.stats import binomtest
+
     tosses, faces = len(found), int(found[:, FACE].sum())
     half = 1.96 * found[:, LOSS].std(ddof=1) / math.sqrt(tosses)
     loss, place, angle, face = found.mean(axis=0)

@@ -11,7 +11,6 @@ from typing import cast
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.stats import binomtest, mannwhitneyu
 
 from analytic.block import RigidBlock
 from analytic.conditioning import scaled
@@ -82,6 +81,8 @@ def measure(job: Job) -> Row:
 
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the tests of each rock with who predicts a fall, what is right, and areas of ROC."""
+    from scipy.stats import mannwhitneyu
+
     # what is fitted predicts the fifth of the tests that its fit has not seen; nan is wrong
     falls = (rows["outcome"] == Outcome.OVERTURNED.value).astype(float)
     rows = rows.assign(falls=falls.where(rows["outcome"] != Outcome.FAILED.value))
@@ -124,6 +125,8 @@ def tabulate(rows: pd.DataFrame) -> Tables:
 
 def _shares(right: pd.DataFrame, name: str, fell: NDArray[np.int64]) -> Row:
     """Return how much is right, within 95 % (Wilson), and McNemar's p against rule and authors."""
+    from scipy.stats import binomtest
+
     mine = right[name]
     low, high = binomtest(int(mine.sum()), len(mine)).proportion_ci(method="wilson")
     line = {"tests": len(mine), "share": mine.mean(), "share_low": low, "share_high": high}

@@ -8,18 +8,16 @@ import io
 import math
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 from jinja2 import Environment, PackageLoader
-from matplotlib.figure import Figure
 from tqdm import tqdm
 
 from engines import ENGINES
 from studies.cases.paper import PULSES
 from studies.kit import app
 from studies.kit.arguments import Place
-from studies.kit.pictures import lay_out, write_points
 from studies.kit.say import number, part
 from studies.kit.store import FolderError, engines_of, provenance_of
 from studies.kit.tables import table_in, write_text
@@ -29,6 +27,9 @@ from studies.page.chapters import CHAPTERS, PARTS, Part
 from studies.page.facts import presets, wrong
 from studies.sources.registry import resolve
 from studies.sweep import STUDY as SWEEP
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PAGE = "report.html"
 SHOWN = 20
@@ -155,6 +156,8 @@ def _section(one: Part, folder: Path, full: bool) -> dict[str, Any]:
 
 def embedded(drawing: Figure) -> str:
     """Return a figure as the address of an image that holds it, sharp and not large."""
+    from studies.kit.pictures import lay_out, write_points
+
     lines, points = io.BytesIO(), io.BytesIO()
     lay_out(drawing)
     drawing.savefig(lines, format="svg", metadata={"Date": None})
