@@ -98,10 +98,8 @@ def _off(mine: FloatArray, right: FloatArray, whose: str) -> Row:
              for peaks in (mine, right)]  # fmt: skip
     kinds = kinds_of(words[0][told], mine[told], words[1][told], right[told])
     both = np.isfinite(mine) & np.isfinite(right) & (right > 0.0)
-    levels = np.array([0.5, 0.9, 1.0])
-    sizes = np.quantile(np.abs(mine[both] / right[both] - 1.0), levels) if both.any() else (
-        levels * math.nan)  # fmt: skip
-    found = {kind: int((kinds == kind).sum()) for kind in KINDS}
+    sizes = pd.Series(np.abs(mine[both] / right[both] - 1.0)).quantile([0.5, 0.9, 1.0])
+    found: Row = {kind: int((kinds == kind).sum()) for kind in KINDS}
     found |= dict(zip(("median_error", "p90_error", "max_error"), sizes, strict=True))
     return {f"{whose}{name}": value for name, value in found.items()}
 

@@ -37,8 +37,7 @@ USUAL = {name: usual for name, (usual, *_) in VARIED.items()}
 AHEAD = 20
 """Steps to that of the impact."""
 SLIDES = 0.1
-"""A corner that leaves faster along the base than this part of its approach has slid, though its
-friction is to hold it; what it gives back is of another impact."""
+"""A corner that leaves faster along the base than this part of its approach has slid."""
 SHOWN = 0.6
 """The coefficient for which settings are quoted."""
 STILL = SinePulse(amplitude=0.0, omega=1.0, half_cycles=1)

@@ -30,10 +30,8 @@ PULSES = ((0.4, 6.2832), (0.45, 8.0), (0.5, 9.0))
 """Amplitude [g] and circular frequency [rad/s] of full sines."""
 RIDE = SinePulse(amplitude=1.0, omega=2.0 * math.pi, half_cycles=4)
 """Of a floor, which a block with a friction of 1 rides over 0.32 m."""
-
 SEED, CASES = 54, 60
 """Of the random frames and slides."""
-
 SEEN = {
     "frame": ("parting", "tilt", "drift_m"),
     "slide": ("place_m", "lift_m", "flat_m", "turn_rad"),

@@ -15,19 +15,15 @@ from analytic.motion import SinePulse
 from engines.scene import BEAM_DEPTH, SPACING
 
 LEAST_NORMAL = 0.2
-"""Part of the weight above which the reference's normal force stays in cases that are kept; of a
-block that overturns until it passes the critical rotation for good."""
+"""Part of the weight that the reference's normal force keeps, until a block overturns for good."""
 FRICTION = 1.0
 """What a frame's contacts may need: those of squat columns need more than engines may have."""
-
 MOST_NEEDED = 0.72
 """What a box may need that stands on a floor at a friction of 0.8."""
-
 CALM = 10.0
 """Condition number up to which a frame is calm."""
 SLIPS = 1e-3, 10.0
 """Least slip and longest way, over B, of a slide: shorter is not told from a tremor."""
-
 Drawn = Literal["block", "frame"]
 """Scenes of which random cases are drawn."""
 

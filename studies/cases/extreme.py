@@ -30,26 +30,20 @@ EDGE = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Extreme:
-    """A block, a pulse and what is extreme about them; None stands for a preset's own value.
-
-    The amplitude counts in `onsets`, g B/H, and after the pulse all is watched for `rest_s` at
-    least. A restitution is the velocity ratio of impacts; an engine's impact is its own, so cases
-    with one are not asked of engines. `contact`, in units of 1/p, is the time T of a contact that
-    holds the block's mass by a spring of m/T^2 with critical damping; a density is in kg/m3.
-    """
+    """A block, a pulse and what is extreme about them; None stands for a preset's own value."""
 
     name: str
     group: str
     width_m: float = 0.5
     aspect: float = 3.0
-    onsets: float = 1.2
+    onsets: float = 1.2  # the amplitude over g B/H
     omega_over_p: float = 3.0
     half_cycles: int = 2
-    restitution: float | None = None
-    rest_s: float = 0.0
-    density: float = 1000.0
+    restitution: float | None = None  # velocity ratio of impacts; engines have their own
+    rest_s: float = 0.0  # that all is watched at least after the pulse
+    density: float = 1000.0  # [kg/m3]
     friction: float | None = None
-    contact: float | None = None
+    contact: float | None = None  # p T of a spring m/T^2 that holds the block, damped critically
     step_s: float | None = None
 
     @property

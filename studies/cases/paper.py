@@ -14,20 +14,15 @@ from analytic.motion import SinePulse
 
 PULSES = {"half-sine": 1, "full-sine": 2}
 """Half cycles of each pulse."""
-
 SWEEPS = {
     6: ("half-sine", 0.05),
     7: ("half-sine", 0.1),
-    8: ("full-sine", 0.1),
+    8: ("full-sine", 0.1),  # so the paper's text; the caption repeats the 0.125 of figure 9
     9: ("full-sine", 0.125),
 }
-"""Pulse and excess e of each figure: its amplitude is (B/H + e) g.
-
-The caption of figure 8 repeats the 0.125 of figure 9; the paper's text lists 0.1 and 0.125."""
-
+"""Pulse and excess e of each figure: its amplitude is (B/H + e) g."""
 ASPECTS = (2, 3, 4)
 """H/B, the rows of panels."""
-
 WIDTHS_M = (0.5, 1.0)
 """B [m], the columns of panels."""
 

@@ -39,6 +39,7 @@ LOSS, PLACE, ANGLE, FACE = range(4)
 """What is found of a toss: loss, mean distance [m], mean angle [rad], whether the face is right."""
 
 
+@cache
 def read_tosses(folder: Path) -> tuple[FloatArray, ...]:
     """Return the tosses of a folder, in the order of their numbers: 13 numbers a frame, in m."""
     paths = sorted(folder.glob("*.pt"), key=lambda path: (len(path.stem), path.stem))
@@ -200,16 +201,13 @@ def jobs(sources: Sequence[str], folder: Path) -> list[Job]:
     return found
 
 
-tosses_of = cache(read_tosses)
-
-
 def measure(job: Job) -> Row:
     """Return what an engine makes of every toss with some settings, as text to the bit."""
     if job.lost is not None:
         return {"outcome": Outcome.FAILED.value, "message": job.lost.message}
     try:
         world = WORLDS[job.labels["engine"]](job.labels)
-        tosses = tosses_of(Path(job.labels["folder"]))
+        tosses = read_tosses(Path(job.labels["folder"]))
         found = np.array([off(world(toss), toss) for toss in tosses])
     except Exception as error:
         return {"outcome": Outcome.FAILED.value, "message": one_line(error)}

@@ -22,8 +22,7 @@ from studies.cases.refusal import BadInputError
 from studies.kit import arguments
 
 MOST_TIME, MOST_STEPS = 1e6, 1e9
-"""How long a block is watched at most, in units of 1/p, and in how many steps: 1e9 take the fastest
-solver minutes and an engine hours."""
+"""How long a block is watched at most, in units of 1/p, and in how many steps."""
 
 Pulse = Literal["half-sine", "full-sine"]
 

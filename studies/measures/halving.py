@@ -27,11 +27,9 @@ MOST_TRUSTED = 30.0
 """A larger factor is no bound: the estimate does not see the error."""
 TEST, CALIBRATE = USES = "test", "calibrate"
 """What a random case is for: to try the factors, or to find them."""
-
 NO_BOUND = "no bound"
 ELSEWHERE = "the factor was found at the preset's own step"
-"""With steps that land it is the same at two and four times the step, within 3 %; with a fixed
-step of MuJoCo it is twice as large at eight times the step."""
+"""With landing steps it keeps within 3 % at four times the step; with others it may double."""
 
 
 def halved(job: Job) -> Job | None:

@@ -46,26 +46,20 @@ def energy(block: Rocker, history: History) -> FloatArray:
     return kinetic + 2.0 * np.sin(block.alpha - 0.5 * y) * np.sin(0.5 * y)
 
 
-def flights(block: Rocker, motion: Motion, response: Response) -> list[FloatArray]:
-    """Return the energies of the samples between two impacts, after the ground motion."""
+def growth(block: Rocker, motion: Motion, response: Response) -> float:
+    """Return by how much energy rises in free rocking, which can only lose it, over its largest."""
     history = response.history
     if history is None or len(history.time) < 2:
-        return []
-    energies = energy(block, history)
+        return math.nan
+    every = energy(block, history)
     edges = [motion.duration, *(i.time for i in response.impacts if i.time >= motion.duration)]
     margin = 2.0 * float(history.time[1] - history.time[0])
-    result = []
+    parts = []
     for start, end in itertools.pairwise(edges):
         apart = max(margin, NEAR * (end - start))
         inside = (history.time > start + apart) & (history.time < end - apart)
         if np.count_nonzero(inside) > 1:
-            result.append(energies[inside])
-    return result
-
-
-def growth(block: Rocker, motion: Motion, response: Response) -> float:
-    """Return by how much energy rises in free rocking, which can only lose it, over its largest."""
-    parts = flights(block, motion, response)
+            parts.append(every[inside])
     if not parts:
         return math.nan
     energies = np.concatenate(parts)

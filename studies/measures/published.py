@@ -19,8 +19,7 @@ from studies.sources.registry import resolve
 PUBLISHED = Path(__file__).parents[1] / "published"
 """The folder of the published tables, one folder inside for each chapter."""
 COLUMNS = Path(__file__).with_name("columns.csv")
-"""What each column means, in all tables or in the one that its line names: text, boolean, integer
-(a count) or number; its unit, "-" without one; and its meaning."""
+"""The type, unit ("-" without one) and meaning of each column, in all tables or in a named one."""
 
 
 def columns() -> dict[Any, list[str]]:

@@ -30,8 +30,7 @@ LEAN, RATE = 0.25 * BLOCK.alpha, 0.1 * BLOCK.alpha * BLOCK.p
 ONSET, INCLINE = G * math.tan(BLOCK.alpha), 0.6 * G
 """What lifts the block, and the pull along the base under which the box slides [m/s2]."""
 OFF = 0.47
-"""Part of a step from which on a moment is another one: what takes 16 steps within a step has
-less."""
+"""Part of a step from which on a moment is another one; 16 steps within a step are less off."""
 WEIGHT = (0.0, -G)
 Pull = tuple[float, float]
 

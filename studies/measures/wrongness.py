@@ -15,10 +15,8 @@ from analytic.response import Outcome, Response
 FALL, REST, NO_ANSWER = "fall_wrong", "rest_wrong", "no_answer"
 KINDS = (FALL, REST, NO_ANSWER)
 """Kinds of wrong outcomes, which are columns of tables, too."""
-
 WORDS = {FALL: "wrong overturning", REST: "missed rocking", NO_ANSWER: "no result"}
 """Kind -> its name in a sentence."""
-
 MEANINGS = {
     FALL: "one overturns, the other does not",
     REST: "a peak below a tenth of the exact one, or above 1 % of θcr for rest",
@@ -27,8 +25,7 @@ MEANINGS = {
 """Kind -> what it counts of an outcome and the exact one."""
 
 LEAST_PART, LEAST = 0.1, 0.01
-"""A peak below this part of the exact one misses the rocking, as one above this part of theta_cr
-does where the exact solution is at rest: below the onset, contacts as documented lean by 0.003."""
+"""Part of the exact peak, and of theta_cr where the exact solution rests, that tells rocking."""
 
 ANSWERS = tuple(outcome.value for outcome in (Outcome.AT_REST, Outcome.ROCKED, Outcome.OVERTURNED))
 """Outcomes that can be right."""

@@ -34,14 +34,8 @@ class Part:
 
     def words(self, out: Path | str, full: bool) -> list[str]:
         """Return the command line after `rocking`."""
-        return [
-            self.name,
-            "--out",
-            str(out),
-            *self.needs,
-            *self.always,
-            *(self.full if full else self.quick),
-        ]
+        chosen = self.full if full else self.quick
+        return [self.name, "--out", str(out), *self.needs, *self.always, *chosen]
 
     def command(self, full: bool) -> str:
         """Return the whole command line."""

@@ -23,8 +23,7 @@ from engines.settings import one_of, perhaps
 from studies.sources.scipy_peers import solve_ivp_response
 
 Kind = Literal["model", "solver", "peer", "engine"]
-"""Models and solvers take microseconds, peers (general-purpose integrators) milliseconds, and
-none of them crashes; an engine may."""
+"""Models, solvers and peers (general-purpose integrators) do not crash; an engine may."""
 
 NOT_OPTIONS = frozenset({"block", "system", "motion", "model", "method", "preset", "times"})
 """What is asked and who, beside which an option is a question of how."""

@@ -46,7 +46,6 @@ ANSWERING = (
 
 
 def told_by(*commands):
-    """Return what each command loads beside what those before it did, in one process."""
     asked = [sys.executable, "-c", ANSWERING, json.dumps(commands)]
     done = subprocess.run(asked, capture_output=True, text=True, check=True)
     lists = re.findall("^LOADED (.*)$", done.stdout, re.MULTILINE)

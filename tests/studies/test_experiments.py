@@ -19,7 +19,6 @@ HEADS = ["Test Number", *(text for rock in MESHES for text in (FELL.format(rock)
 
 
 def workbook(path, heads, lines):
-    """Write a workbook as Excel does: its words apart, and an empty row at first."""
     rows = "<row/>"
     for n, line in enumerate([range(len(heads)), *lines], 1):
         cells = (f'<c r="{chr(65 + k)}{n}"><v>{value}</v></c>' for k, value in enumerate(line))

@@ -57,7 +57,6 @@ def scene(preset, **options):
 
 
 def scenes_of(engine, kind):
-    """Return what is exported of a kind: with each preset, or on each floor that carries."""
     if kind == "floor":
         levels = ENGINES[engine].presets[0].settings.__dataclass_fields__["floor"]
         floors = set(levels.metadata["allowed"].names) - {"position"}

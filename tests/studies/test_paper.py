@@ -50,7 +50,6 @@ def test_the_finding_of_presets_names_the_worst_engine_of_the_best():
 
 
 def lines(number, **peaks):
-    """Return rows of a figure: for each source its peaks panel by panel, inf where it overturns."""
     rows = [
         {
             "figure": number, "panel": panel, "source": source, "peak_ratio": peak,

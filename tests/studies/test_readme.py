@@ -99,7 +99,6 @@ def test_every_link_of_a_page_leads_somewhere():
 
 
 def anchors(path):
-    """Return the names that a link into a page may end with: its own, and those of its headings."""
     text = path.read_text(encoding="utf-8")
     heads = re.findall("^#+ (.*)$", text, re.MULTILINE)
     return {*re.findall(r'<a id="([^"]+)"', text), *(slug(head) for head in heads)}
@@ -126,7 +125,6 @@ def commands(name):
 
 
 def taken(arguments):
-    """Let the command line take arguments, all of them, without running anything."""
     app = make_app(GROUPS, arguments[0])
     _, bound, ignored = app.parse_args(arguments, exit_on_error=False)
     assert bound.arguments and not ignored

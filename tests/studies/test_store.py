@@ -32,7 +32,6 @@ JOBS = [
 
 
 def filled(folder, jobs=JOBS, measure=answer, also=(), table=""):
-    """Run jobs into a folder; return the rows, and how many were computed."""
     with Store(folder, "sweep", table) as kept:
         rows = run.run(jobs, measure, store=kept, also=also)
         makers = run.makers_of(jobs, measure)
