@@ -120,10 +120,15 @@ def variants(engine: str) -> Iterator[Variant]:
         for factor in declared.factors:
             if set(factors.BOTH) <= plain.keys():
                 yield from _exchanged(plain[name], factor)
-            for item in factor.levels:
-                if name in item.presets:
-                    varied = {each: getattr(item, each) for each in ("settings", "scene", "trap")}
-                    yield replace(plain[name], factor=factor.name, level=item.name, **varied)
+            yield from _levels(plain[name], factor)
+
+
+def _levels(plain: Variant, factor: factors.Factor) -> Iterator[Variant]:
+    """Yield a preset with each level of a factor that it is tried with."""
+    for item in factor.levels:
+        if plain.preset in item.presets:
+            varied = {each: getattr(item, each) for each in ("settings", "scene", "trap")}
+            yield replace(plain, factor=factor.name, level=item.name, **varied)
 
 
 def _exchanged(plain: Variant, factor: factors.Factor) -> Iterator[Variant]:
