@@ -18,11 +18,6 @@ LEAST_RUNS, LEAST_S = 5, 0.02
 """A time is of the best of so many runs at least, or marked; in that time [s] all gets warm."""
 STEPPED = "A compiled loop over `mj_step` takes MuJoCo's steps; Python takes all others."
 """Said beside times of a step or of a case."""
-RETIRED = (
-    "PyBullet's times here, but for `default` and `recommended`, are those of a retired compiled "
-    "loop, shorter than today's."
-)
-"""Said beside times along the step, until they are measured again."""
 
 EXACT = "Taylor series"
 """The method to whose time the others are compared."""

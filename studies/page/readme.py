@@ -22,7 +22,7 @@ from studies.kit.jobs import Job, Question, ask
 from studies.kit.say import capital, duration, listed, part, signed
 from studies.kit.store import check, versions, write_record
 from studies.kit.tables import read_table, tables_of, write_table, write_text
-from studies.measures.costs import RETIRED, STEPPED
+from studies.measures.costs import STEPPED
 from studies.measures.history import samples
 from studies.measures.presets import engine_of, look_of
 from studies.measures.published import dictionary
@@ -138,7 +138,7 @@ def pages(root: Path) -> dict[Path, str]:
         "chapters": {title: parts for title, parts in chapters.items() if parts},
         **{"made": facts.made(published), "presets": facts.presets(published)},
         "moving": moving(published),
-        **{"RETIRED": RETIRED, "STEPPED": STEPPED, "TROUBLES": TROUBLES},
+        **{"STEPPED": STEPPED, "TROUBLES": TROUBLES},
         **{"WORDS": WORDS, "MEANINGS": MEANINGS, "REST_S": REST_S},
     }
     return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {
