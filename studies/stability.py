@@ -29,7 +29,7 @@ ENERGY_BAND, SLIP_BAND = 0.01, 0.01
 """Rise of the energy of free rocking over its largest value, and slip over B, that count."""
 SMALLEST = 1e-6
 """Peaks below this part of θcr may go unseen."""
-RUN_S = 60.0
+RUN_S = 180.0
 """Time limit of a row, and of a run of an engine [s]."""
 MOST_STEPS = 5_000_000
 """Steps that a run of an engine may take."""
