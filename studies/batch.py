@@ -16,7 +16,6 @@ from cyclopts import Parameter
 from engines.world import FloatArray
 from studies.cases.refusal import BadInputError
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.say import listed
 from studies.kit.study import Figures, Study, Tables, stages
 from studies.kit.tables import unpacked
 from studies.measures import batches
@@ -108,10 +107,12 @@ def finding(tables: Tables) -> str:
     """Say how many cases each way gives at a median error of 1 %, and what repeats."""
     best = tables["rates"].query("target == 0.01").sort_values("cases_per_s")
     best = best.drop_duplicates("backend", keep="last")
-    rates = listed(
-        f"{NAMES[line['backend']]} {line['cases_per_s']:,.0f}" for line in best.to_dict("records")
+    devices = tables["batch"].groupby("device")["name"].first()
+    rates = "; ".join(
+        f"{NAMES[line['backend']]} {line['cases_per_s']:,.0f} on {devices[line['device']]}"
+        for line in best.to_dict("records")
     )
-    said = f"At a median error below 1 % these solve so many cases a second: {rates}."
+    said = f"Cases per second at a median error below 1 %: {rates}."
     for line in tables["spread"].query("runs > 1").to_dict("records"):
         said += f" In {line['runs']} equal runs {line['bits_differ']:.0f} of {line['worlds']}"
         said += " worlds differ by a bit."
