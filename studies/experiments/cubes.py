@@ -21,7 +21,7 @@ from engines import ENGINES
 from engines.world import FloatArray
 from studies.cases.refusal import BadInputError
 from studies.kit.jobs import Job, Question, Row
-from studies.kit.say import listed, one_line
+from studies.kit.say import one_line
 from studies.kit.study import Figures, Tables
 from studies.kit.tables import packed, unpacked
 
@@ -178,7 +178,7 @@ def jobs(sources: Sequence[str], folder: Path) -> list[Job]:
 
     engines = [name for name in sources if name != "exact"] or [*WORLDS]
     if other := set(engines) - set(WORLDS):
-        raise BadInputError(f"--sources is {sorted(other)[0]!r}; it may be {listed(WORLDS)}")
+        raise BadInputError(f"--sources is {sorted(other)[0]!r}; it may be {' or '.join(WORLDS)}")
     read_tosses(folder)
     points = np.exp(RANGES[0] + Sobol(3, rng=SEED).random(DRAWN) * np.diff(RANGES, axis=0))
     cube = RigidBlock(width=2.0 * HALF, height=2.0 * HALF)
