@@ -43,7 +43,8 @@ MOST = 40_000
     half_cycles=st.integers(1, 2),
 )
 def test_hardly_above_the_onset(engine, preset, excess, omega, aspect, half_cycles):
-    """An engine may see no rocking of so small a peak; it neither falls nor goes on for ever."""
+    """From 1.0001 to 1.1 of it a peak is a part of alpha so small that an engine may see no rocking
+    at all; it neither falls nor goes on for ever."""
     block = RigidBlock(width=0.5, height=0.5 * aspect)
     motion = pulse(1.0 + excess, omega, half_cycles, block)
     exact = simulate(block, motion)

@@ -276,11 +276,12 @@ BEGINNINGS = {
     "score": [("pybullet", "--out", "FOLDER", "--quick")],
     "animate": [(*CASE, "--out", "film.gif")],
     "export": [(*CASE, "--engine", "pybullet", "--out", "NEW")],
+    "experiments": [("--rocks", "FOLDER", "--out", "FOLDER")],
     "doctor": [()],
     "help": [()],
     "readme": [()],
 }
-"""What stands before an option so that it matters, of commands that do not fill a folder."""
+"""What stands before an option so that it matters, of commands that fill no folder, or need one."""
 FEW = {"sweep": ("--figure", "6"), "validate": ("--cases", "1")}
 """What makes little work of those that do: thousands of jobs are made before a folder is opened."""
 ODD_WORDS = """

@@ -35,8 +35,8 @@ STUDIES = {
 """Study -> a run of it that takes seconds, with an engine of another package (tests/plugin)."""
 QUICKEST = ("histories", "linearizations", "validate")
 OTHERWISE = {"advise", "animate", "blocks", "compare", "export", "doctor", "report"}
-OTHERWISE |= {"help", "readme", "score"}
-"""Commands of one case, of lists and of all studies."""
+OTHERWISE |= {"help", "readme", "score", "batch", "experiments"}
+"""Commands of one case, of lists and of all studies; and studies with tests of their own."""
 
 
 def test_every_study_is_here():
