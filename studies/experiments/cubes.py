@@ -121,36 +121,43 @@ def in_mujoco(asked: Mapping[str, Any]) -> World:
     return world
 
 
+@cache
+def _client() -> int:
+    """Return a client of PyBullet for cubes alone."""
+    import pybullet
+
+    return int(pybullet.connect(pybullet.DIRECT))
+
+
 def in_pybullet(asked: Mapping[str, Any]) -> World:
     """Return PyBullet's world: a box on a box, whose contact the board alone has."""
     import pybullet as p
 
-    if not p.isConnected():
-        p.connect(p.DIRECT)
-    p.resetSimulation()
-    p.setGravity(0.0, 0.0, -GRAVITY)
-    p.setTimeStep(1.0 / HZ / SUBSTEPS)
+    own = {"physicsClientId": _client()}  # the runs of blocks have theirs
+    p.resetSimulation(**own)
+    p.setGravity(0.0, 0.0, -GRAVITY, **own)
+    p.setTimeStep(1.0 / HZ / SUBSTEPS, **own)
     sides = ([2.5, 2.5, 0.5], 3 * [HALF])
-    shapes = [p.createCollisionShape(p.GEOM_BOX, halfExtents=each) for each in sides]
-    board = p.createMultiBody(0.0, shapes[0], basePosition=[0.0, 0.0, -0.5])
-    cube = p.createMultiBody(MASS, shapes[1])
-    p.changeDynamics(cube, -1, localInertiaDiagonal=3 * [INERTIA])
-    own = p.getDynamicsInfo(cube, -1)[1]  # the friction of two bodies is the product of both
-    p.changeDynamics(board, -1, lateralFriction=asked["friction"] / own)
+    shapes = [p.createCollisionShape(p.GEOM_BOX, halfExtents=each, **own) for each in sides]
+    board = p.createMultiBody(0.0, shapes[0], basePosition=[0.0, 0.0, -0.5], **own)
+    cube = p.createMultiBody(MASS, shapes[1], **own)
+    p.changeDynamics(cube, -1, localInertiaDiagonal=3 * [INERTIA], **own)
+    other = p.getDynamicsInfo(cube, -1, **own)[1]  # of both friction is the product
+    p.changeDynamics(board, -1, lateralFriction=asked["friction"] / other, **own)
     if asked["stiffness"]:
         contact = {"contactStiffness": asked["stiffness"], "contactDamping": asked["damping"]}
-        p.changeDynamics(board, -1, **contact)
+        p.changeDynamics(board, -1, **contact, **own)
 
     def world(toss: FloatArray) -> FloatArray:
         start, turn = toss[0], turned(toss[0])
-        p.resetBasePositionAndOrientation(cube, start[:3].tolist(), turn.as_quat().tolist())
-        p.resetBaseVelocity(cube, start[7:10].tolist(), turn.apply(start[10:13]).tolist())
+        p.resetBasePositionAndOrientation(cube, start[:3].tolist(), turn.as_quat().tolist(), **own)
+        p.resetBaseVelocity(cube, start[7:10].tolist(), turn.apply(start[10:13]).tolist(), **own)
         found = np.empty((len(toss), 7))
         for frame in found:
-            frame[:3], turn = p.getBasePositionAndOrientation(cube)
+            frame[:3], turn = p.getBasePositionAndOrientation(cube, **own)
             frame[3:] = np.roll(turn, 1)
             for _ in range(SUBSTEPS):
-                p.stepSimulation()
+                p.stepSimulation(**own)
         return found
 
     return world
