@@ -64,9 +64,10 @@ hour. Name one folder.""",
     options=Options,
     captions={
         "rocks": "What fell and what stood, over PGA and PGV, with the tests that all get wrong; "
-        "and how well the margin, PGA and PGV tell one from the other (ROC curves).",
-        "cubes": "Mean loss of the tosses that no fit has seen, within 95 %, and the part of them "
-        "that ends on the right face.",
+        "and how well the margin of the block that fits all tests, PGA and PGV tell one from the "
+        "other (ROC curves).",
+        "cubes": "Mean loss of tosses that no fit here has seen, within 95 %, and the part of them "
+        "that ends on the right face. The authors' settings were fitted to all tosses.",
     },
     **stages(jobs, measure),
     tabulate=_of("tabulate"),

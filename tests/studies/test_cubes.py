@@ -79,3 +79,8 @@ def test_another_folder_is_refused(tosses, tmp_path, capsys):
     refused(capsys, [*asked, "--cubes", tosses, "--sources", "dart"], "dart", "mujoco")
     (tosses / "3.pt").write_text("no zip")
     refused(capsys, [*asked, "--cubes", tosses], "3.pt", "--cubes")
+
+
+def test_an_engine_without_a_result_is_said():
+    rows = pd.DataFrame([{"engine": "mujoco", "settings": "default", "outcome": "failed"}])
+    assert STUDY.finding(STUDY.tabulate(rows)) == "No engine gave a result."
