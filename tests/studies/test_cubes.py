@@ -84,3 +84,14 @@ def test_another_folder_is_refused(tosses, tmp_path, capsys):
 def test_an_engine_without_a_result_is_said():
     rows = pd.DataFrame([{"engine": "mujoco", "settings": "default", "outcome": "failed"}])
     assert STUDY.finding(STUDY.tabulate(rows)) == "No engine gave a result."
+
+
+@pytest.mark.parametrize(
+    ("axis", "turn", "right"),
+    [("z", np.pi, 1.0), ("x", np.pi, 0.0), ("x", np.pi / 2, 0.0), ("x", 0.3, 1.0)],
+)
+def test_a_face_is_right_if_the_same_one_is_up(axis, turn, right):
+    upright, turned = np.zeros((2, 1, 7))
+    upright[:, 3] = 1.0
+    turned[0, 3:] = np.roll(Rotation.from_euler(axis, turn).as_quat(), 1)
+    assert off(turned, upright)[2:] == pytest.approx([turn, right])
