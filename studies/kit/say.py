@@ -64,8 +64,11 @@ def _shortened(text: str, longest: int) -> str:
 
 def prepare_streams() -> None:
     """Send what goes to a closed stream nowhere, and show what a terminal cannot as marks."""
-    sys.stdout = sys.stdout or os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
-    sys.stderr = sys.stderr or os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
+    while (number := os.open(os.devnull, os.O_RDWR)) <= 2:  # else a file or a pipe takes its number
+        os.set_inheritable(number, True)
+    os.close(number)
+    sys.stdout = sys.stdout or os.fdopen(1, "w", closefd=False)
+    sys.stderr = sys.stderr or os.fdopen(2, "w", closefd=False)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
