@@ -144,6 +144,10 @@ def test_closed_streams_change_no_exit_code_and_no_result(tmp_path):
         for number in range(3):
             os.close(number)
 
+    # what is opened later gets none of their numbers, and a process that is started has them, too
+    prepared = "import os; from studies.kit.say import prepare_streams; prepare_streams(); "
+    tried = "raise SystemExit((os.open('.', 0) != 3) + os.system('true <&0 >&1 2>&2'))"
+    assert python("-c", prepared + tried, before=close).returncode == 0
     done = python("-m", "studies", "compare", "--width", "0", before=close)
     assert (done.returncode, done.stdout, done.stderr) == (2, "", "")
     asked = ["validate", "--sources", "exact", "mujoco:tuned", "--cases", "5"]
