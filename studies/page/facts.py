@@ -183,7 +183,7 @@ def lasts(*records: Mapping[str, Any]) -> str:
     runs = [run for run in every if run.get("computed") == run.get("rows")]  # whole ones
     times = {bool(run.get("first")): f"{run['duration_s']:.0f} s" for run in runs}
     first, later = (times.get(kind, "a time that was not measured") for kind in (True, False))
-    return f"{first} the first time, when its functions are compiled, and for {later} later"
+    return f"{first} the first time, when its functions are compiled, then {later}"
 
 
 def documented() -> Iterator[tuple[str, ...]]:

@@ -74,7 +74,7 @@ def test_what_helps_has_a_price(tmp_path):
 def test_the_first_run_and_a_later_one_are_timed_apart():
     later = {"runs": [run_of(False, 9, 9, 21.4), run_of(False, 9, 2, 3.0)]}
     first = {"runs": [run_of(True, 9, 9, 80.9)]}
-    both = "81 s the first time, when its functions are compiled, and for 21 s later"
+    both = "81 s the first time, when its functions are compiled, then 21 s"
     assert facts.lasts(later, first) == both == facts.lasts(first, later)
     unknown = "a time that was not measured"
     assert facts.lasts(later) == both.replace("81 s", unknown)
