@@ -283,10 +283,9 @@ def is_number(word: str) -> bool:
 
 def finite_number(word: str) -> float:
     """Return the number that a word is, not taking what is too small for floating point for 0."""
-    if TOUCHING.fullmatch(word):
-        raise ValueError("numbers that stand apart")
     if not is_number(word):
-        raise ValueError(f"a number{' with a decimal point' if ',' in word else ''}")
+        one = f"a number{' with a decimal point' if ',' in word else ''}"
+        raise ValueError("numbers that stand apart" if TOUCHING.fullmatch(word) else one)
     if not math.isfinite(float(word)):
         raise ValueError("a finite number")
     if float(word) == 0.0 and re.search("[1-9]", re.split("[eE]", word)[0]):
