@@ -7,12 +7,12 @@ import math
 import re
 import stat
 from collections.abc import Iterable, Sequence
+from itertools import takewhile
 from pathlib import Path
 from reprlib import repr as shown
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from analytic.block import GRAVITY
 from analytic.motion import FloatArray
@@ -29,17 +29,20 @@ UNEVEN = 0.03
 
 NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 """A number as programs print it; Python itself also takes 1_000, Arabic digits and NaN."""
-PLAIN, TOUCHING = (re.compile(f"(?:{NUMBER}){many}", re.ASCII) for many in ("", "{2,}"))
+PLAIN, TOUCHING = (re.compile(f"(?>{NUMBER}){many}", re.ASCII) for many in ("", "{2,}"))
 NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 NO_TEXT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\udc80-\udcff]")
 """Control characters, and the bytes that are not UTF-8."""
 
-FOREIGN = re.compile(
-    r"(?i).*\(Format v[\d.]+ with \d+ text lines|.*accelerogram .*GNS Science|\d [A-Z][A-Z ]+$"
-    r"|\*\s*$|(UN)?CORRECTED ACCELEROGRAM|RESPONSE AND FOURIER|Origin Time\s+\d|.*\bSIMBAD\b"
-)
-"""The first line of a file of COSMOS, GeoNet, SMC, CSMIP, K-NET or SIMBAD."""
-
+FOREIGN = {
+    "COSMOS": r".*\(Format v[\d.]+ with \d+ text lines",
+    "GeoNet": r".*accelerogram .*GNS Science",
+    "SMC": r"\d [A-Z]{4,}[A-Z ]*$|\*\s*$",
+    "CSMIP": r"(UN)?CORRECTED ACCELEROGRAM|RESPONSE AND FOURIER",
+    "K-NET": r"Origin Time\s+\d",
+    "SIMBAD": r".*\bSIMBAD\b",
+}
+"""Format that is not read -> how its first line begins."""
 NOT_SECONDS = r"(?:(?:[mun]|milli|micro|nano)s(?:ec\w*)?|min\w*|hours?|hz)\b"
 FORMS = [
     re.compile(form, re.IGNORECASE | re.ASCII)
@@ -50,12 +53,13 @@ FORMS = [
         rf"\bDT\s*=\s*(?P<dt>{NUMBER})(?![\w.]|\s*{NOT_SECONDS})",
         r"^NDATA:\s*(?P<count>\S.*?)\s*$",
         r"^SAMPLING_INTERVAL_S:\s*(?P<dt>\S.*?)\s*$",
+        r"^\s*\*+\s*begin\b",
     )
 ]
-"""How the header of an AT2 or an ASC file says the number of samples and their step [s]."""
+"""How the header of an AT2 or an ASC file says the number of samples, their step [s], its end."""
+END = re.compile(r"\s*\*+\s*end\b", re.IGNORECASE)
 ASC = re.compile("data_type:(?!.*spectr).*acceleration$", re.IGNORECASE)
 """What an ASC file, whose header is keys before colons, must say."""
-BEGIN, END = (re.compile(rf"\s*\*+\s*{word}\b", re.IGNORECASE) for word in ("begin", "end"))
 
 STATED = re.compile(
     r"\bunits?\b(?:\s*(?:\b(?:of|in|is|are)\b|[:=]))*\s*[(\[]?\s*([^\s,;)\]]*[^\s,;)\].:])"
@@ -68,78 +72,76 @@ TIME = re.compile(r"\b(?:t|time)(?![a-z])", re.IGNORECASE)
 A = re.compile(r"\bag?(?![a-z])|acc", re.IGNORECASE)
 FIELD = re.compile(r"[^\s(\[]+(?:\s*[(\[][^)\]]*[)\]])?")
 """A name without blanks, but for one before the bracket of its unit."""
-TIME_UNIT = re.compile(r"(?:[(\[_/]|\bin\b)\s*([^\W_]+)")
-SHORTER = re.compile(r"(?<![\w/])(?:ms|msecs?|milliseconds?|[µμ]s)\b", re.IGNORECASE)
-
+TIME_UNIT = re.compile(r"(?:[(\[_/]|\bin\b)\s*(?!s(?:ec(?:ond)?s?)?(?![^\W_]))([^\W_]+)", re.I)
+SHORTER = re.compile(r"(?<![\w/])(ms|msecs?|milliseconds?|[µμ]s)\b", re.IGNORECASE)
+"""A unit of times that are not seconds: behind a name, and anywhere."""
 REMARK = re.compile(r"\s*[#%]")
 
 Lines = Sequence[tuple[int, str]]
 """Lines of a file, each behind its number."""
 Rows = Sequence[tuple[int, list[str]]]
 """Words of lines, each line's behind its number."""
-
-
 Sampled = tuple[float, str, FloatArray]
-"""Time between samples [s], unit of acceleration in a file, and samples [m/s2]."""
+"""Time between samples [s], unit of acceleration in a file, and samples."""
 
 
 def read(path: Path, units: str | None, dt: float | None, insist: bool = True) -> Sampled:
-    """Read a file; `analytic.Record.read` says which, and when it raises ValueError."""
+    """Read a file, its samples in m/s2; `analytic.Record.read` says which, and what it refuses."""
     if units is not None and units not in UNITS:
         raise ValueError(f"units must be among {', '.join(UNITS)}, not {units!r}")
     if path.suffix.lower() in (".vt2", ".dt2"):
         raise ValueError("it must be a file of acceleration, as AT2 files are")
-    lines = [(at, line) for at, line in enumerate(lines_of(path), start=1) if line.strip()]
-    header, below, said = _split(lines)
-    if not said and lines and FOREIGN.match(lines[0][1].strip()):
-        raise ValueError(
-            f"it is of another format ({shown(lines[0][1].strip())}); it must be a PEER AT2 or an "
-            "ESM ASC file, or a table of two columns, time [s] and acceleration, made from it"
-        )
+    header, below, said = _split([one for one in enumerate(lines_of(path), 1) if one[1].strip()])
     mark = next((mark for mark in ";," for _, row in below[:1] if not said and mark in row), None)
     rows = [(at, row.strip().rstrip(",;" if mark else "").split(mark)) for at, row in below]
     widths = [len(words) for _, words in rows]
     if widths[:1] == [2] and {*widths[1:]} == {1} and rows[0][1][0].isdecimal() and not said:
         (at, words), *rows = rows  # "npts dt" above the samples
-        said = _number(at, words[1]), _whole(at, words[0])
-    if not said and dt is not None and not (mark or {*widths} <= {2} or _timed(rows)):
+        said = _number(at, words[1]), _number(at, words[0])
+    elif dt is not None and not (said or mark or {*widths} <= {2} or _timed(rows)):
         said = dt, None
     if said:
-        _check_quantity(header)
-        samples = [_number(at, word) for at, words in rows for word in words]
-        found = _sampled(said[0], samples, header, units, said[1])
+        step, unit, samples = said[0], _unit(header, units, False), _numbers(rows)
     else:
-        found = _table(header, rows, mark, units)
-    if insist and dt is not None and found[0] != dt:
-        raise ValueError(f"it states a step of {found[0]:g} s; dt must not be {dt:g}")
-    if insist and units is not None and UNITS[units] != UNITS[found[1]]:
-        raise ValueError(f"it states {found[1]}; units must not be {units}")
-    return found
+        step, unit, samples = _table(header, rows, mark, units)
+    count = samples.size if said is None or said[1] is None else said[1]
+    if (most := max(samples.size, count)) > MOST_SAMPLES:
+        raise ValueError(f"it holds {most:.0f} samples; it must hold {MOST_SAMPLES} at most")
+    if count != samples.size:
+        problem = f"it holds {samples.size} samples"
+        raise ValueError(f"{problem}; it must hold the {count:.0f} of its header")
+    if insist and dt not in (None, step):
+        raise ValueError(f"it states a step of {step:g} s; dt must not be {dt:g}")
+    if insist and units is not None and UNITS[units] != UNITS[unit]:
+        raise ValueError(f"it states {unit}; units must not be {units}")
+    with np.errstate(over="ignore"):  # what overflows is infinite, which no record is
+        return step, unit, UNITS[unit] * samples
 
 
 def _split(lines: Lines) -> tuple[Lines, Lines, tuple[float, float | None] | None]:
     """Return header, rows, and the step and count it says; a step alone needs "End Data" below."""
-    asc = any(line.startswith("SAMPLING_INTERVAL_S:") for _, line in lines[:100])
-    end, said = 0, {"count": dict[float, None](), "dt": dict[float, None]()}
-    for i, (at, line) in enumerate(lines[:100], start=1):
-        if asc and ":" not in line:
-            break
-        found = [one for form in FORMS for one in form.finditer(line) if not REMARK.match(line)]
-        for name, word in (pair for one in found for pair in one.groupdict().items()):
-            said[name][_whole(at, word) if name == "count" else _number(at, word)] = None
-            end = i
-        end = i if asc or BEGIN.match(line) else end
+    top = lines[:100]
+    asc = any(line.startswith("SAMPLING_INTERVAL_S:") for _, line in top)
+    if asc:
+        top = [*takewhile(lambda one: ":" in one[1], top)]
+    end, said = len(top) if asc else 0, {"count": dict[float, None](), "dt": dict[float, None]()}
+    for i, (at, line) in enumerate(top, start=1):
+        forms = [] if REMARK.match(line) else FORMS
+        for found in (one for form in forms for one in form.finditer(line)):
+            end = max(end, i)
+            for name, word in found.groupdict().items():
+                if name == "count" and not word.isdecimal():
+                    problem = f"line {at}: it says {shown(word)} samples"
+                    raise ValueError(f"{problem}; it must be a whole number")
+                said[name][_number(at, word)] = None
     closed = bool(lines and END.match(lines[-1][1]))
     if not (asc or said["count"] or (said["dt"] and closed)):
-        words = (re.split(r"[\s,;]", line.strip())[0] for _, line in lines)
-        end = next((i for i, word in enumerate(words) if is_number(word)), len(lines))
-        header = [*lines[:end], *(line for line in lines[end:] if REMARK.match(line[1]))]
-        return header, [line for line in lines[end:] if not REMARK.match(line[1])], None
+        return *_split_table(lines), None
     for name, values in said.items():
         if len(values) != 1 and (values or name == "dt" or not closed):
             number = " and ".join(f"{value:g}" for value in values) or "nothing"
             raise ValueError(f"its header says {number} as {name}; it must say one, dt in seconds")
-    header = [line for line in lines[:end] if not asc or line[1].startswith(("DATA_", "UNITS:"))]
+    header = [one for one in lines[:end] if not asc or one[1].startswith(("DATA_", "UNITS:"))]
     if asc and not any(ASC.match(line.strip()) for _, line in header):
         kind = ", ".join(line for _, line in header)[:99]
         raise ValueError(f"it says {kind}; it must say DATA_TYPE: ACCELERATION")
@@ -147,45 +149,57 @@ def _split(lines: Lines) -> tuple[Lines, Lines, tuple[float, float | None] | Non
     return header, below, (min(said["dt"]), next(iter(said["count"]), None))
 
 
+def _split_table(lines: Lines) -> tuple[Lines, Lines]:
+    """Return what is above and below the first line that begins with a number; remarks go up."""
+    first = next((line.strip() for _, line in lines), "")
+    for name in (name for name, form in FOREIGN.items() if re.match(form, first, re.IGNORECASE)):
+        raise ValueError(
+            f"it is of another format, {name} ({shown(first)}); it must be a PEER AT2 or an ESM "
+            "ASC file, or a table of two columns, time [s] and acceleration, made from it"
+        )
+    numbers = (at for at, line in lines if is_number(re.split(r"[\s,;]", line.strip())[0]))
+    begin = next(numbers, math.inf)
+    header = [one for one in lines if one[0] < begin or REMARK.match(one[1])]
+    return header, [one for one in lines if one[0] >= begin and not REMARK.match(one[1])]
+
+
 def _timed(rows: Rows) -> bool:
     """Return whether rows are of one width, the first column of times, which no samples are."""
-    times = np.array([float(words[0]) if is_number(words[0]) else 0.0 for _, words in rows])
     alike = len({len(words) for _, words in rows}) == 1 < len(rows[0][1])
-    return alike and len(rows) > 2 and not _uneven(times, range(len(times)))
+    return alike and len(rows) > 2 and not _uneven(_numbers(rows)[:: len(rows[0][1])], rows)
 
 
-def _table(header: Lines, rows: Rows, separator: str | None, units: str | None) -> Sampled:
-    """Read a table of two columns, separated by commas, semicolons or blanks."""
-    if separator is None and rows and all(len(words) == 1 for _, words in rows):
+def _table(header: Lines, rows: Rows, mark: str | None, units: str | None) -> Sampled:
+    """Read a table of two columns, with a mark or blanks between them."""
+    if mark is None and rows and all(len(words) == 1 for _, words in rows):
         raise ValueError('it has one column; dt, or a line "npts dt" above, must say a step')
     if len(rows) < 2:
         raise ValueError(f"it has {len(rows)} rows of numbers; it must have two or more")
     for at, width in ((at, len(words)) for at, words in rows if len(words) != 2):
         raise ValueError(f"line {at} has {width} columns; it must have two, time and acceleration")
-    numbers = [[_number(at, word.strip()) for word in words] for at, words in rows]
-    (times, samples), lines = np.transpose(numbers), [at for at, _ in rows]
-    if not _named(header, separator):
-        _check_quantity(header)
-        joined = "\n".join(",".join(words) for _, words in rows)
-        if separator == "," and not re.search(r"[.eE]|,[ \t]+\S", joined):
+    times, samples = _numbers(rows).reshape(-1, 2).T
+    if not (named := _named(header, mark)):
+        words = "\n".join(",".join(words) for _, words in rows)
+        if mark == "," and not re.search(r"[.eE]|,[ \t]+\S", words):
             raise ValueError(
                 "its commas may be decimal ones; it must have decimal points, semicolons or blanks "
                 "between the columns, or a line of their names"
             )
-        if len(rows) > 2 and not _uneven(samples, lines):
+        if len(rows) > 2 and not _uneven(samples, rows):
             problem = "both columns increase in equal steps; a line above must name them"
             raise ValueError(f"{problem}, as in t (s), a (g)")
-    if problem := _uneven(times, lines):
+    if problem := _uneven(times, rows):
         raise ValueError(problem)
-    return _sampled(float(times[-1] - times[0]) / (len(times) - 1), samples, header, units)
+    step = (times[-1].item() - times[0].item()) / (len(times) - 1)
+    return step, _unit(header, units, named), samples
 
 
 def _named(header: Lines, separator: str | None) -> bool:
     """Return whether a line names the columns; ValueError if not as time [s] and acceleration."""
     named = False
     for at, line in header:
-        plain = line.strip("#% \t")
-        mark = next((mark for mark in (separator, ",", ";", "\t") if mark and mark in plain), None)
+        plain, found = line.strip("#% \t"), SHORTER.search(line)
+        mark = next((mark for mark in (separator, *",;\t") if mark and mark in plain), None)
         names = plain.rstrip(",;").split(mark) if mark else FIELD.findall(plain)
         heads = mark is not None and mark == separator and plain == line.strip()
         if len(names) == 2 and (heads or any(map(TIME.search, names))):
@@ -193,32 +207,32 @@ def _named(header: Lines, separator: str | None) -> bool:
             if not TIME.search(time) or TIME.search(other) or not A.search(other):
                 where = f"line {at}: its columns are {shown(time)} and {shown(other)}"
                 raise ValueError(f"{where}; they must be time and acceleration, in this order")
-            unit = TIME_UNIT.search(time)
-            if unit and unit[1].lower() not in ("s", "sec", "secs", "second", "seconds"):
-                raise ValueError(f"line {at}: its times are in {shown(unit[1])}; they must be in s")
-        if found := SHORTER.search(line):
-            raise ValueError(f"line {at} speaks of {found[0]}; its times must be in s")
+            found = TIME_UNIT.search(time) or found
+        if found:
+            raise ValueError(f"line {at}: its times are in {shown(found[1])}; they must be in s")
     return named
 
 
-def _uneven(times: FloatArray, lines: Sequence[int]) -> str:
-    """Say why times, each of a line, do not increase in equal steps, or return an empty string."""
+def _uneven(times: FloatArray, rows: Rows) -> str:
+    """Say why times, each of a row, do not increase in equal steps, or return an empty string."""
     with np.errstate(over="ignore", invalid="ignore"):
         steps = np.diff(times)
         usual, dt = float(np.median(steps)), float(times[-1] - times[0]) / len(steps)
         missed = np.abs(times - times[0] - np.arange(len(times)) * dt) > UNEVEN * dt
     jumps = np.flatnonzero((steps <= 0.0) | (steps > 1.5 * usual))
     for at in (jumps if jumps.size else np.flatnonzero(missed[1:])).tolist()[:1]:
-        where = f"line {lines[at + 1]}: the time {times[at + 1]:g} s follows {times[at]:g} s"
+        where = f"line {rows[at + 1][0]}: the time {times[at + 1]:g} s follows {times[at]:g} s"
         return f"{where}; steps must be positive and equal, as most are: {usual:g} s"
     return ""
 
 
-def _sampled(
-    dt: float, samples: ArrayLike, header: Lines, given: str | None, count: float | None = None
-) -> Sampled:
-    """Return samples in m/s2, of the stated unit or the given one; what overflows is infinite."""
+def _unit(header: Lines, given: str | None, named: bool) -> str:
+    """Return the unit that a header states, or the given one; refuse velocity and displacement."""
     stated = {unit: at for at, line in header for unit in _units_in(line)}
+    proper = {*stated} & {*UNITS} and any(ACCELERATION.search(line) for _, line in header)
+    for at, line in header:
+        if (found := OTHER.search(line)) and not (proper or named):
+            raise ValueError(f"line {at} speaks of {found[0].lower()}; it must be acceleration")
     for unit, at in stated.items():
         if unit not in UNITS:
             raise ValueError(f"line {at} states {shown(unit)}; it must be among {', '.join(UNITS)}")
@@ -226,13 +240,7 @@ def _sampled(
         raise ValueError(f"it names several units, {', '.join(sorted(stated))}; it must state one")
     if given is None and not stated:
         raise ValueError(f"it does not state its units; units must: {', '.join(UNITS)}")
-    unit, found = next(iter(stated), given or ""), np.asarray(samples, dtype=np.float64)
-    if found.size > MOST_SAMPLES:
-        raise _too_long(found.size)
-    if count not in (None, found.size):
-        raise ValueError(f"it holds {found.size} samples; it must hold the {count} of its header")
-    with np.errstate(over="ignore"):
-        return dt, unit, np.asarray(UNITS[unit] * found)
+    return next(iter(stated), given or "")
 
 
 def _units_in(line: str) -> Iterable[str]:
@@ -243,38 +251,29 @@ def _units_in(line: str) -> Iterable[str]:
     return (one or other for one, other in STATED.findall(plain))
 
 
-def _check_quantity(header: Lines) -> None:
-    """Refuse velocity or displacement, unless acceleration and a unit of it are spoken of too."""
-    stated = any(unit in UNITS for _, line in header for unit in _units_in(line))
-    proper = stated and any(ACCELERATION.search(line) for _, line in header)
-    for at, line in header:
-        if (found := OTHER.search(line)) and not proper:
-            raise ValueError(f"line {at} speaks of {found[0].lower()}; it must be acceleration")
-
-
 def lines_of(path: Path) -> list[str]:
     """Return the lines of a text file; ValueError if it is none, or too large for a record."""
     kinds = {"d": "a folder", "p": "a named pipe", "s": "a socket"}
     try:
         found = path.stat()
-        if not stat.S_ISREG(found.st_mode):
-            raise ValueError(f"it is {kinds.get(stat.filemode(found.st_mode)[0], 'a device')}")
-        with path.open("rb") as file:
-            content = file.read(BYTES * MOST_SAMPLES + 1)
+        if (kind := stat.filemode(found.st_mode)[0]) != "-":
+            raise OSError(0, f"it is {kinds.get(kind, 'a device')}")
+        content = path.read_bytes() if found.st_size <= BYTES * MOST_SAMPLES else b""
     except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
+        reason = getattr(error, "strerror", error)
         raise ValueError(f"it must be a file that can be read ({reason})") from error
     dark = np.frombuffer(content, dtype=np.uint8) > ord(" ")
     words = int(np.count_nonzero(dark[1:] & ~dark[:-1]))
-    least = max(words / 2.0 - 5000.0, max(found.st_size, len(content)) / BYTES)
+    least = max(words / 2.0 - 5000.0, found.st_size / BYTES)
     if least > MOST_SAMPLES:
-        raise _too_long(least, "at least ")
-    text = content.decode("utf-8-sig", "surrogateescape")
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    if no_text := NO_TEXT.search(text):
-        line, byte = text.count("\n", 0, no_text.start()) + 1, ord(no_text[0]) & 0xFF
-        raise ValueError(f"line {line}: the byte 0x{byte:02x} is not text in UTF-8")
-    return text.split("\n")
+        problem = f"it holds at least {least:.0f} samples"
+        raise ValueError(f"{problem}; it must hold {MOST_SAMPLES} at most")
+    lines = re.split("\r\n?|\n", content.decode("utf-8-sig", "surrogateescape"))
+    for at, no_text in enumerate(map(NO_TEXT.search, lines), start=1):
+        if no_text:
+            byte = ord(no_text[0]) & 0xFF
+            raise ValueError(f"line {at}: the byte 0x{byte:02x} is not text in UTF-8")
+    return lines
 
 
 def is_number(word: str) -> bool:
@@ -285,7 +284,8 @@ def is_number(word: str) -> bool:
 def finite_number(word: str) -> float:
     """Return the number that a word is, not taking what is too small for floating point for 0."""
     if not is_number(word):
-        raise ValueError(f"a number{' with a decimal point' if ',' in word else ''}")
+        one = f"a number{' with a decimal point' if ',' in word else ''}"
+        raise ValueError("numbers that stand apart" if TOUCHING.fullmatch(word) else one)
     if not math.isfinite(float(word)):
         raise ValueError("a finite number")
     if float(word) == 0.0 and re.search("[1-9]", re.split("[eE]", word)[0]):
@@ -298,21 +298,9 @@ def _number(line: int, word: str) -> float:
     try:
         return finite_number(word)
     except ValueError as error:
-        apart = TOUCHING.fullmatch(word) and not is_number(word)
         said = word[:40] if is_number(word) else shown(word)
-        problem = "numbers that stand apart" if apart else error
-        raise ValueError(f"line {line}: {said} must be {problem}") from error
+        raise ValueError(f"line {line}: {said} must be {error}") from error
 
 
-def _whole(line: int, word: str) -> int:
-    """Return the number of samples that a line of a header says in plain digits."""
-    if not (word.isascii() and word.isdecimal()):
-        raise ValueError(f"line {line}: it says {shown(word)} samples; it must be a whole number")
-    count = int(word[:12])
-    if count > MOST_SAMPLES:
-        raise _too_long(count)
-    return count
-
-
-def _too_long(count: float, about: str = "") -> ValueError:
-    return ValueError(f"it holds {about}{count:.0f} samples; it must hold {MOST_SAMPLES} at most")
+def _numbers(rows: Rows) -> FloatArray:
+    return np.array([_number(at, word.strip()) for at, words in rows for word in words])
