@@ -75,8 +75,8 @@ class Step(NamedTuple):
     base_x: float  # the base's place at its end [m]
     phase: ContactPhase  # what it is for
     side: float  # the corner turned about, -1 or 1, or 0 where both hold
-    base_rise: float  # the base's velocity upwards [m/s], and its place at the end [m]
-    base_z: float
+    base_rise: float = 0.0  # the base's velocity upwards [m/s], and its height at the end [m]
+    base_z: float = 0.0
 
 
 class Pose(NamedTuple):

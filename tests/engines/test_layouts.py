@@ -272,13 +272,13 @@ RISING = SinePulse.in_g(0.3, omega=11.0, half_cycles=5)
 
 @pytest.mark.parametrize("engine", FIXED)
 def test_no_acceleration_upwards_changes_no_bit_and_a_constant_one_is_another_g(engine):
-    none, one = replace(RISING, amplitude=0.0), Record(dt=1.0, samples=[1.0] * 3)
-    asked = {"preset": "tuned", "duration": 2.0}
+    none, one = replace(RISING, amplitude=0.0), Record(dt=0.75, samples=[1.0] * 3)
+    asked = {"preset": "tuned", "duration": 1.5, "step": 2e-3 * BLOCK.p}
     same = (all_but_times(rocked(engine, it, **asked)) for it in (SINE, BothWays(SINE, none)))
     assert next(same) == next(same)
     heavy = replace(BLOCK, gravity=BLOCK.gravity + 1.0)
-    more = rocked(engine, BothWays(SINE, one), step=2e-3 * BLOCK.p, **asked)
-    other = rocked(engine, SINE, system=heavy, step=2e-3 * heavy.p, **asked)
+    more = rocked(engine, BothWays(SINE, one), **asked)
+    other = rocked(engine, SINE, system=heavy, **asked | {"step": 2e-3 * heavy.p})
     assert more.peak_ratio == pytest.approx(other.peak_ratio, rel=1e-3)
 
 
@@ -298,7 +298,7 @@ def test_a_mirrored_block_has_the_mirrored_response(engine):
     left = rocked(engine, BothWays(mirrored, RISING), system=other, preset="tuned")
     within = max(equal_to(engine), NUISANCE.get(engine, 0.0))
     assert right == pytest.approx(left.peak_sides[::-1], rel=within)
-    assert min(right) > 0.05
+    assert min(right) > 0.03
 
 
 @pytest.mark.parametrize("engine", HOLDING)
