@@ -25,7 +25,8 @@ It holds
 - a world (`engines.world`): ``moment``, ``step`` or ``advance``, ``state``, ``fault``, ``close``.
   It starts from `Scene.bodies`. A `Step` carries all that it needs: the gravity that gives the
   velocity its kick, along the base too where the frame is "base", and the base's velocity and
-  place where it is "world", in which an adapter may say how far the base lags (``lag_m``);
+  place where it is "world", in which an adapter may say how far the base lags (``lag_m``), and
+  moves it vertically, too, where the engine declares so (``lifts``);
 - ``build(scene, settings, dt_s)``, the only place that may import the library, so that
   declarations are read without it: a library that is missing is a row "not available";
 - where it can be, ``script``: the scene in the library's own words, by which `rocking export`

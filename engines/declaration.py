@@ -199,6 +199,7 @@ class Engine:
     frames : those of `FRAMES` that it has
     stacks : whether it can hold several bodies, and bodies that rest on others
     offsets : whether its block can have a mass that is not spread evenly
+    lifts : ways to move its base, as its setting `floor` names them, that move it vertically too
     precision : of its numbers
     shortest_step : p dt below which a step has no effect that is resolved
     rest_factor : up to how many ordinary steps long one of a block at rest may be; 1 where how the
@@ -220,6 +221,7 @@ class Engine:
     frames: tuple[str, ...] = FRAMES
     stacks: bool = False
     offsets: bool = False
+    lifts: tuple[str, ...] = ()
     precision: Precision = Precision.DOUBLE
     shortest_step: float = 1e-12
     rest_factor: float = REST_FACTOR
@@ -284,6 +286,7 @@ class Engine:
         stacked, built = len(layout.bodies) > 1, "is not built here for"
         uneven, frame = not layout.bodies[0].is_homogeneous, scene.frame or preset.frame
         own = f"{self.name}:{preset.name}"
+        way = scene.settings.get("floor", getattr(preset.settings, "floor", ""))
         lacking = {
             f"{self.title} {built} {STACKED}": stacked and not self.stacks,
             f"{self.title} {built} {UNEVEN}": uneven and not self.offsets,
@@ -292,6 +295,10 @@ class Engine:
                 scene.rest_s and preset.stepping is not Stepping.FIXED
             ),
             f"{own} {built} {UNEVEN}": uneven and lands,
+            f"{own} {built} {HEAVING}": scene.heaves and lands,
+            f"{own} {built} {HEAVING}; presets on a base at rest are": (
+                scene.heaves and frame == "world" and way not in self.lifts
+            ),
             f"{own} {built} {STACKED}": stacked and preset.stacked is None,
             f"{self.title} has no frame {frame!r}": frame not in self.frames,
         }
@@ -300,6 +307,7 @@ class Engine:
 
 STACKED = "bodies that rest on other bodies"
 UNEVEN = "a block whose mass is not spread evenly"
+HEAVING = "a base that moves vertically"
 
 
 @dataclass(frozen=True, slots=True)

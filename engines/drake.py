@@ -112,7 +112,7 @@ class DrakeWorld(Adapter):
         self.moment = Moment.MIDDLE if settings.accuracy is None else Moment.END
         self._count, self._time, self._problem = 0, 0.0, ""
         self._gravity, self._moving = scene.system.gravity, bool(self._way)
-        self._velocity_of = mean_velocity_of(scene.motion.segments())
+        self._velocity_of, self._rise_of = map(mean_velocity_of, (scene.shaking, scene.heaving))
         self._radius = settings.corner_radius * scene.system.width
         builder = self._library.DiagramBuilder()
         self.plant, self.graph = self._new_plant(scene, builder)
@@ -267,9 +267,12 @@ class DrakeWorld(Adapter):
         """Advance to a time [s] in steps of the engine's own, the base at its mean velocities."""
         if self._problem:
             return 1
-        gained = self._velocity_of(end_s, end_s) - self._velocity_of(self._time, self._time)
-        pull_x = 0.0 if self._moving else -gained / (end_s - self._time)
-        self.plant.mutable_gravity_field().set_gravity_vector((pull_x, 0.0, -self._gravity))
+        along, up = (
+            (of(end_s, end_s) - of(self._time, self._time)) / (end_s - self._time)
+            for of in (self._velocity_of, self._rise_of)
+        )
+        pull = 0.0 if self._moving else -along, 0.0, -self._gravity - up
+        self.plant.mutable_gravity_field().set_gravity_vector(pull)
         before = self._integrator.get_num_steps_taken()
         within = np.linspace(self._time, end_s, WITHIN + 1)[1:-1] if self._moving else ()
         for end in (*map(float, within), end_s):

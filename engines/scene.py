@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from analytic.block import RigidBlock, Upright
 from analytic.checks import check_tilt, finite, positive, start_of
 from analytic.frame import Rocker, RockingFrame
-from analytic.motion import SEGMENT_COLUMNS, BothWays, Motion
+from analytic.motion import SEGMENT_COLUMNS, BothWays, Motion, Still
 from analytic.slide import SlidingBlock
 from engines.settings import one_of
 
@@ -241,7 +241,7 @@ class Scene:
     system : RigidBlock, or another of `engines.scene.LAYOUTS`
         What stands on the base. Its restitution is not used: the impact is the engine's own.
     motion : Motion
-        Horizontal motion of the base.
+        Horizontal motion of the base; of a `RigidBlock` a `BothWays`, which moves it upwards too.
     start : pair of float
         theta [rad] and theta' [rad/s] at t = 0; by default the block is at rest. A block that
         leans stands on its corner on the side of its lean; upright, it turns about the corner
@@ -304,8 +304,9 @@ class Scene:
 
     def __post_init__(self) -> None:
         one_of("accuracy", self.accuracy, tuple(ACCURACIES))
-        if isinstance(self.motion, BothWays):
-            raise ValueError("vertical is given; an engine takes no vertical motion")
+        if self.heaves and not (isinstance(self.system, RigidBlock) and self.lightest > 0.0):
+            words = "engines take it of a RigidBlock that it presses on its base all the time"
+            raise ValueError(f"vertical is given; {words}")
         if (count := getattr(self.motion, "half_cycles", 1)) > MOST_HALF_CYCLES:
             allowed = f"at most {MOST_HALF_CYCLES}, as an engine holds the times of all in memory"
             raise ValueError(f"half_cycles is {count!r}; it must be {allowed}")
@@ -354,9 +355,28 @@ class Scene:
         return all(body.at.at_rest for body in self.bodies)
 
     @property
+    def heaves(self) -> bool:
+        """Whether the base moves vertically too."""
+        return isinstance(self.motion, BothWays)
+
+    @property
+    def lightest(self) -> float:
+        """The least that the base's acceleration upwards leaves of gravity [m/s2]."""
+        lowest = self.motion.lowest if isinstance(self.motion, BothWays) else 0.0
+        return self.system.gravity + min(lowest, 0.0)
+
+    @property
     def shaking(self) -> list[list[float]]:
         """The base's motion, a row of `SEGMENT_COLUMNS` each: the rest before it is one as well."""
-        rows: list[list[float]] = self.motion.segments().tolist()
+        return self._rows(getattr(self.motion, "level", self.motion))
+
+    @property
+    def heaving(self) -> list[list[float]]:
+        """Its motion upwards, likewise."""
+        return self._rows(getattr(self.motion, "upward", Still()))
+
+    def _rows(self, motion: Motion) -> list[list[float]]:
+        rows: list[list[float]] = motion.segments().tolist()
         rest = [-self.rest_s, *[0.0] * (len(rows[0]) - 1)] if self.rest_s else []
         return [rest, *rows] if rest else rows
 

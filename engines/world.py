@@ -67,12 +67,16 @@ class Step(NamedTuple):
     kick_s: float
     # gravity [m/s2] along the base, for the body force -m u_g'', which is 0 in the frame "world"
     pull_x: float
-    pull_z: float  # gravity [m/s2] by which `dt_s` gives the velocity what `kick_s` of weight does
+    # gravity [m/s2] by which `dt_s` gives the velocity what `kick_s` of weight does, and the body
+    # force of a base that moves vertically, too
+    pull_z: float
     base_kick: float  # change of the base's velocity in `kick_s` [m/s]
     base_velocity: float  # the base's, whose mean over the step leads to its place [m/s]
     base_x: float  # the base's place at its end [m]
     phase: ContactPhase  # what it is for
     side: float  # the corner turned about, -1 or 1, or 0 where both hold
+    base_rise: float = 0.0  # the base's velocity upwards [m/s], and its height at the end [m]
+    base_z: float = 0.0
 
 
 class Pose(NamedTuple):

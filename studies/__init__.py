@@ -39,7 +39,7 @@ def respond(
     block : RigidBlock, RockingFrame or SlidingBlock
         What stands on the base.
     motion : Motion, optional
-        For instance a `SinePulse`; by default the ground does not move.
+        For instance a `SinePulse`, or `BothWays`; by default the ground does not move.
     start : (float, float), optional
         Rotation theta [rad] and angular velocity [rad/s] at time zero; at rest by default.
     duration : float, optional

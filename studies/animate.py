@@ -6,6 +6,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from analytic.motion import BothWays
 from analytic.response import Outcome
 from analytic.slide import SlidingBlock
 from studies.cases.refusal import BadInputError
@@ -41,8 +42,6 @@ def command(
     sources
         As in `rocking compare`, at most 8; the models are not asked by default where nothing rocks.
     """
-    if standing.scene == "slide" and sources == DEFAULT_SOURCES:  # it has no linearization
-        sources = tuple(name for name in sources if name != "housner")
     check_file("--out", out, ".gif", ".mp4")
     if out.suffix == ".mp4" and find_spec("imageio_ffmpeg") is None:
         words = "that needs the extra [video]: pip install imageio-ffmpeg"
@@ -53,6 +52,9 @@ def command(
         )
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
+    nonlinear = standing.scene == "slide" or isinstance(motion, BothWays)
+    if nonlinear and sources == DEFAULT_SOURCES:
+        sources = tuple(name for name in sources if name != "housner")
     window = window_of(system, motion, dt=yours.dt)
     frames = window * FRAMES_A_SECOND
     if not frames < MOST_FRAMES:

@@ -89,7 +89,7 @@ def command(
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
     if isinstance(motion, BothWays) and sources == DEFAULT_SOURCES:
-        sources = ("exact",)
+        sources = ("exact", *core_sources())
     window = window_of(system, motion, duration, p_dt=effort.p_dt, dt=yours.dt)
     times = np.linspace(0.0, window, 1501) if plot else None
     case = Question(system=system, motion=motion, start=start, duration=window, times=times)

@@ -133,7 +133,13 @@ def files(use: Use, expected: Any, exact: Any) -> dict[str, str]:
         slow=SLIP_RATE * math.sqrt(scene.system.gravity * scene.system.width),
         short=LEAST_SLIP * scene.system.width,
     )
-    rows = "".join(f"    {tuple(map(float, row))},\n" for row in scene.shaking)
-    segments = f"SEGMENTS = (\n{rows})\n\nmean_velocity = mean_velocity_of(SEGMENTS)\n"
-    shaking = f"{inspect.getsource(ground)}\n\n{segments}"
+    shaking = inspect.getsource(ground) + segments("SEGMENTS", scene.shaking, "mean_velocity")
+    if scene.heaves:
+        shaking += segments("UPWARDS", scene.heaving, "mean_rise")
     return {"block.py": block, "ground.py": shaking, **script.files}
+
+
+def segments(name: str, each: list[list[float]], mean: str) -> str:
+    """Return lines that name the segments of a motion, and its mean velocity."""
+    rows = "".join(f"    {tuple(map(float, row))},\n" for row in each)
+    return f"\n\n{name} = (\n{rows})\n\n{mean} = mean_velocity_of({name})\n"

@@ -151,6 +151,7 @@ ENGINE = Engine(
     build=MujocoWorld,
     stacks=True,
     offsets=True,
+    lifts=("weld",),
     presets=(
         NAIVE,
         NAIVE.at_rest(),

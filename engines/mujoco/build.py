@@ -399,6 +399,7 @@ def begin_contact(scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> C
     return ContactState(
         planar=s.planar,
         moving=scene.frame == "world",
+        level=-scene.bodies[0].height,
         base_velocity=s.floor == "surfacevel",
         welded=scene.frame == "world" and s.floor == "weld",
         single=s.geometry != "corners",
@@ -447,6 +448,8 @@ def script(scene: Scene, settings: MujocoSettings, dt_s: float) -> Script:
     if scene.frame == "world":
         # a base without a body of its own is moved after the step
         step.insert(0 if welded else 2, "data.mocap_pos[0, 0] = base_x")
+        if scene.heaves:
+            step.insert(0, f"data.mocap_pos[0, 2] = {world.held.level!r} + base_z")
         if s.floor == "surfacevel":
             step.insert(0, "model.geom_surfacevel[0, 0] = base_velocity")
     if s.planar:

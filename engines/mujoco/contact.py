@@ -83,7 +83,8 @@ class ContactState:
     time: float = 0.0  # its end [s]
     sliding: float = 0.0  # the damping along the base in it
     moved: float = 0.0  # place of the base [m]
-    raised: float = 0.0  # its height above where it began [m]
+    raised: float = 0.0  # its height above where it began [m], and where that was
+    level: float = 0.0
     velocity: float = 0.0  # of the base [m/s]
     lag: float = 0.0  # how far a welded base was at most from where it should have been [m]
     aloft: bool = False  # the last step was of a swing
@@ -153,6 +154,7 @@ def prepare(held: ContactState, arrays: Arrays, step: Step) -> None:
         held.velocity = step.base_velocity
         # the place from which the base sets out; or where it goes
         arrays.base_place[0, 0] = step.base_x if held.welded else held.moved
+        arrays.base_place[0, 2] = held.level + (step.base_z if held.welded else held.raised)
 
 
 def set_reference(held: ContactState, arrays: Arrays, step: Step) -> None:
@@ -255,11 +257,12 @@ def gap_of(held: ContactState, arrays: Arrays, pair: int) -> float:
 def notice(held: ContactState, arrays: Arrays, forces: Forces, step: Step) -> None:
     """Note what a step has done, for the next one."""
     held.moved = step.base_x if held.moving else 0.0
+    held.raised = step.base_z if held.moving else 0.0
     if held.welded:
         # the joint of the base is the last
         at = len(arrays.position) - FREE
         held.moved = arrays.position[at]
-        held.raised = arrays.position[at + 2] - arrays.base_place[0, 2]
+        held.raised = arrays.position[at + 2] - held.level
         held.lag = max(held.lag, abs(held.moved - step.base_x))
     held.time += step.dt_s
     if held.carry != 0.0 and forces.contacts > 0:

@@ -149,6 +149,7 @@ ENGINE = Engine(
     build=BulletWorld,
     stacks=True,
     offsets=True,
+    lifts=("velocity", "constraint"),
     presets=(
         NAIVE,
         NAIVE.at_rest(),

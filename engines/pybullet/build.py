@@ -308,11 +308,13 @@ class BulletWorld(Adapter):
 
     def _move_base(self, step: Step) -> None:
         """Give the base its velocity or its place, or move what holds it there."""
-        p, client, place = self._p, self._client, [step.base_x, *self.ground[1:]]
+        p, client = self._p, self._client
+        place = [step.base_x, 0.0, self.ground[2] + step.base_z]
         if self._constrained:
             p.changeConstraint(self.holder, place, maxForce=self.most_force, physicsClientId=client)
         elif self._s.floor == "velocity":
-            p.resetBaseVelocity(self.base, [step.base_velocity, 0.0, 0.0], physicsClientId=client)
+            velocity = [step.base_velocity, 0.0, step.base_rise]
+            p.resetBaseVelocity(self.base, velocity, physicsClientId=client)
         else:
             p.resetBasePositionAndOrientation(self.base, place, UPRIGHT, client)
 
@@ -362,10 +364,12 @@ class BulletWorld(Adapter):
         moves = bool(way)
         if way == "constraint":
             notes.name(holder=self.holder)
-        there = f"[base_x, 0.0, {self.ground[2]!r}]"
+        heaves = self._scene.heaves
+        rise = "base_rise" if heaves else "0.0"
+        there = f"[base_x, 0.0, {self.ground[2]!r}{' + base_z' * heaves}]"
         move = {
             "constraint": f"p.changeConstraint(holder, {there}, maxForce={self.most_force!r})",
-            "velocity": "p.resetBaseVelocity(base, [base_velocity, 0.0, 0.0])",
+            "velocity": f"p.resetBaseVelocity(base, [base_velocity, 0.0, {rise}])",
             "position": f"p.resetBasePositionAndOrientation(base, {there}, {UPRIGHT})",
         }.get(way, "")
         at = "p.getBasePositionAndOrientation({})[0][0]"

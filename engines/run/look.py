@@ -52,6 +52,7 @@ class Lists(NamedTuple):
     """What grows with motion and time: ground (m + 1, 8), stops, loads (l, 3), rows, events."""
 
     ground: FloatArray
+    heaving: FloatArray  # as the ground, upwards
     stops: FloatArray
     loads: FloatArray
     rows: FloatArray
@@ -59,7 +60,7 @@ class Lists(NamedTuple):
 
 
 def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray) -> bool:
-    """See a state (bodies, 4), and write the next step (10,); return whether the run goes on."""
+    """See a state (bodies, 4), and write the next step (12,); return whether the run goes on."""
     if runs[0].pace.last_dt > 0.0 and not undecided(runs, lists, state):
         return False
     chosen = next_step(runs, lists, state)
@@ -67,6 +68,7 @@ def look(runs: Sequence[Run], lists: Lists, step: FloatArray, state: FloatArray)
     step[3], step[4] = chosen.pull_x, chosen.pull_z
     step[5], step[6], step[7] = chosen.base_kick, chosen.base_velocity, chosen.base_x
     step[8], step[9] = chosen.phase, chosen.side
+    step[10], step[11] = chosen.base_rise, chosen.base_z
     return True
 
 
@@ -81,7 +83,7 @@ def next_step(runs: Sequence[Run], lists: Lists, state: FloatArray) -> Step:
             choice = choose(run.landing, pace, pose_in(state, 0), run.watch.lifted)
         else:
             choice = Choice(even(pace.left, pace.dt), ContactPhase.SWING, 0.0)
-    return advance(pace, lists.ground, choice)
+    return advance(pace, lists.ground, lists.heaving, choice)
 
 
 def pose_in(state: FloatArray, body: int) -> Pose:
@@ -135,14 +137,14 @@ class Monitor:
             )
             for body in scene.bodies[: max(rocking, 1)]
         ]
-        ground = np.array(rows_of(scene.shaking))
+        ground, heaving = (np.array(rows_of(each)) for each in (scene.shaking, scene.heaving))
         rows = np.zeros((len(self.runs), 0, len(Row._fields)))
         if scene.times is not None:
             rows = np.array([[Row(0.0, 0.0, *scene.start)]] * len(self.runs))
             for run in self.runs:
                 run.watch.rows = run.slide.rows = 1
         events = np.zeros((len(self.runs), 0, 4))
-        self.lists = Lists(ground, *timetable(scene, pace.same), rows, events)
+        self.lists = Lists(ground, heaving, *timetable(scene, pace.same), rows, events)
         self._scene = scene
         self._look: Any = compiled(look) if scene.compiled else look
         self._step, self._last = np.zeros(len(Step._fields)), np.empty(0)

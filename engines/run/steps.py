@@ -44,12 +44,15 @@ class Pace:
     part: float  # moment of a step's velocity, as its part
     gravity: float
     felt: bool  # a block on a base at rest carries the body force of the base's acceleration
+    heaves: bool  # which is vertical, too
     same: float  # difference of two times that are the same [s]
     motion_end: float
     end: float  # of the observation at the least [s]
     time: float = 0.0  # end of the last step [s]; before 0 the base is at rest
     last_dt: float = 0.0
     velocity: float = 0.0  # of the base at the moment of the last velocity [m/s]
+    rise: float = 0.0  # the same, upwards
+    height: float = 0.0
     place: float = 0.0  # of the base at the step's end [m]
     stops: int = 0  # how many have passed, and how many loads
     loads: int = 0
@@ -72,6 +75,7 @@ def begin_pace(
         part=moment.value,
         gravity=scene.system.gravity,
         felt=scene.frame != "world",
+        heaves=scene.heaves,
         same=max(SAME_TIME * dt_s, resolution.time_s),
         motion_end=scene.motion.duration,
         end=scene.watched,
@@ -84,24 +88,34 @@ def begin_of(scene: Scene, dt_s: float) -> float:
     return -math.ceil((scene.rest_s or 0.0) / dt_s * (1.0 - SAME_TIME)) * dt_s
 
 
-def advance(pace: Pace, ground: Any, choice: Choice) -> Step:
-    """Return a chosen step over a ground (m + 1, 8), the base at its mean velocity, and move on."""
+def advance(pace: Pace, ground: Any, heaving: Any, choice: Choice) -> Step:
+    """Return a chosen step over a ground (m + 1, 8), the base at its mean velocity, and move on.
+
+    Heaving is the same of the motion upwards.
+    """
     dt, phase, side = choice
     begin, end = pace.time, pace.time + dt
     end = 0.0 if abs(end) < 0.5 * dt else end  # the motion begins with a step, however many rest
     # from the moment of the last velocity to that of this one
     kick_s = pace.part * dt + (1.0 - pace.part) * pace.last_dt
     mean = mean_velocity_over(ground, begin, end)
-    velocity = mean
+    velocity, since, until = mean, begin, end
     if pace.part != MIDDLE:
-        velocity = mean_velocity_over(ground, end, end if pace.part == END else end + dt)
+        since, until = end, end if pace.part == END else end + dt
+        velocity = mean_velocity_over(ground, since, until)
     base_kick, pace.velocity = velocity - pace.velocity, velocity
+    lift = 0.0
+    if pace.heaves:
+        pace.height += dt * mean_velocity_over(heaving, begin, end)
+        rise = mean_velocity_over(heaving, since, until)
+        lift, pace.rise = rise - pace.rise if pace.felt else 0.0, rise
     pace.place += dt * mean
     pace.time, pace.last_dt = end, dt
     pull_x = -base_kick / dt if pace.felt else 0.0
-    pull_z = -pace.gravity * kick_s / dt
+    pull_z = -(pace.gravity * kick_s + lift) / dt
     purpose: Any = phase.value  # in compiled code a name has no number of its own
-    return Step(dt, end, kick_s, pull_x, pull_z, base_kick, velocity, pace.place, purpose, side)
+    now = dt, end, kick_s, pull_x, pull_z, base_kick, velocity, pace.place, purpose, side
+    return Step(*now, pace.rise, pace.height)
 
 
 def pass_to(pace: Pace, stops: FloatArray, loads: FloatArray) -> None:
@@ -135,7 +149,8 @@ def even(left_s: float, longest: float) -> float:
 def timetable(scene: Scene, same: float) -> tuple[FloatArray, FloatArray]:
     """Return the stops [s], and the loads, in which abs(u_g'') exceeds g tan(alpha), a row each."""
     right, left = (scene.system.gravity * math.tan(alpha) for alpha in scene.alphas)
-    loads = loads_of(scene.motion, np.array([left, right]))
+    # steps that land, which alone need them, take no vertical motion
+    loads = [] if scene.heaves else loads_of(scene.motion, np.array([left, right]))
     stops = {*scene.motion.breakpoints, scene.watched, *(t for load in loads for t in load[:2])}
     later = [*sorted(stop for stop in stops if stop > same), math.inf]
     return np.array(later), np.array([*loads, NEVER])

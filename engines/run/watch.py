@@ -166,7 +166,7 @@ def begin_watch(
         lift=lift,
         rest_time=REST_TIME / block.p,
         rest_rate=REST_RATE * block.p * block.alpha,
-        fall=2.0 * FALL_PART * weight,
+        fall=2.0 * FALL_PART * weight * (scene.lightest / block.gravity),
         least_fall=0.5 * weight * (FALL_STEPS * dt_s) ** 2,
         motion_end=scene.motion.duration,
         watched=scene.watched,

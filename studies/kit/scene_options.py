@@ -63,7 +63,7 @@ class Excitation:
         end is reported.
     vertical
         A recorded acceleration of the base upwards, in a file as of --record; --scale and --pga
-        leave it alone. Only the exact model takes it.
+        leave it alone. The exact model and engines take it, but presets that land do not.
     vertical_amplitude
         Amplitude of a pulse of the base upwards [g], instead of --vertical; it may be negative.
     vertical_omega

@@ -52,8 +52,8 @@ class Source:
             block.is_even or self.engine or self.kind == "model"
         ):
             raise ValueError(f"{self.name} takes no block with an offset; models and engines do")
-        if isinstance(motion, BothWays) and self.name != "exact":
-            raise ValueError(f"{self.name} takes no vertical motion; only exact does")
+        if isinstance(motion, BothWays) and not self.engine and self.name != "exact":
+            raise ValueError(f"{self.name} takes no vertical motion; exact and engines do")
         if getattr(self.call, "func", None) is run_engine:
             self.declared.use(scene_of(block, motion, self.preset, **options))
             return

@@ -11,6 +11,7 @@ from known import Bare, ScriptedWorld
 from uses import BLOCK, CORE, HERE, SHAKEN, every_use, held_frames, pulse, rocked, scene
 
 from analytic import RigidBlock, RockingFrame, SlidingBlock
+from analytic.motion import BothWays
 from analytic.response import Outcome, Reason
 from engines import ENGINES
 from engines.run.run import build, simulate_world
@@ -18,6 +19,7 @@ from engines.world import Pose
 
 SIZE = {"width": 0.5, "height": 1.5}
 UNEVEN = RigidBlock(**SIZE, offset=0.1)
+HEAVING = BothWays(SHAKEN, SHAKEN)
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -63,6 +65,8 @@ def test_a_library_that_is_missing_is_a_row_that_says_how_to_install_it(name):
         ({"offsets": False}, {"system": UNEVEN, "preset": "tuned"}, "PyBullet is not built here"),
         ({}, {"system": UNEVEN, "preset": "landing"}, "pybullet:landing is not built here"),
         ({}, {"rest_s": 0.2, "preset": "landing"}, "only equal steps can begin before"),
+        ({}, {"motion": HEAVING, "preset": "landing"}, "pybullet:landing is not built here"),
+        ({"lifts": ()}, {"motion": HEAVING, "preset": "default"}, "presets on a base at rest are"),
     ],
 )
 def test_what_an_engine_cannot_do_is_a_row_that_says_so(change, asked, named):
@@ -83,6 +87,8 @@ def test_what_an_engine_cannot_do_is_a_row_that_says_so(change, asked, named):
         ({"times": [1.0, 0.5]}, "they must increase"),
         ({"friction": -0.1}, r"friction is -0\.1; it must not be negative"),
         ({"motion": pulse(1.3, 1.0, 10**6 + 1)}, "half_cycles is 1000001; it must be at most 1000"),
+        ({"motion": HEAVING, "system": RockingFrame(**SIZE, load=1.0)}, "vertical is given"),
+        ({"motion": BothWays(SHAKEN, pulse(5.0, 3.0, 2))}, "presses on its base all the time"),
     ],
 )
 def test_a_scene_refuses_what_is_not_allowed(options, message):

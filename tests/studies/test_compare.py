@@ -141,6 +141,12 @@ def test_a_slide_is_compared(capsys):
     assert found["message"] == "as pymunk:tuned"
 
 
+def test_a_base_that_moves_vertically_is_compared(capsys):
+    code, rows = compared(capsys, *CASE, "--vertical-amplitude", 0.3, "--vertical-omega", 11)
+    assert (code, [*rows]) == (0, ["exact", "pybullet", "mujoco"])
+    assert max(abs(row["error"]) for row in rows.values()) < 1e-2
+
+
 def test_a_frame_is_compared(capsys):
     asked = [*SHAKEN, *OF_A_FRAME, "--duration", 1.5, "--sources", "exact", "mujoco"]
     code, rows = compared(capsys, *asked)

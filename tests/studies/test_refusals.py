@@ -91,7 +91,7 @@ compare BLOCK --record PIPE | --record is | a file that can be read (it is a nam
 compare CASE --baseline none | only with --record
 compare CASE --vertical-omega 9 | --vertical-amplitude missing | requires both
 compare CASE --vertical X.AT2 --vertical-omega 9 | --vertical-omega is 9; it may be given only
-compare CASE --vertical X.AT2 --sources exact rk4 | rk4 takes no vertical motion; only exact does
+compare CASE --vertical X.AT2 --sources exact rk4 | rk4 takes no vertical motion; exact and
 compare CASE --vertical-amplitude -1 --vertical-omega 9 | --vertical falls to -9.81 m/s2; it must
 export CASE --out DIR --engine mujoco --record x | it may be given only without --record
 blocks list.csv --record X.AT2 ./X.AT2 --out DIR | --record names 'X.AT2' twice
