@@ -6,14 +6,16 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
+from functools import cache
 from itertools import islice
 from pathlib import Path
 from textwrap import wrap
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any, TypeAlias, cast
 
 import pandas as pd
 from cyclopts import Parameter
 
+from analytic import conditioning, sensitivity, simulate
 from analytic.block import RigidBlock
 from analytic.motion import SinePulse
 from engines import ENGINES
@@ -21,7 +23,7 @@ from engines.declaration import AT_REST, PASTED
 from engines.factors import DEFAULT
 from engines.registry import OWN
 from engines.run.run import YAW
-from studies.cases.drawn import free_boxes
+from studies.cases.drawn import Kind, free_boxes
 from studies.kit import arguments
 from studies.kit.arguments import Running
 from studies.kit.jobs import Job, Question, Row, ask, summary
@@ -32,7 +34,7 @@ from studies.kit.study import Study, Tables, stages
 from studies.kit.tables import table_in
 from studies.measures import published as known
 from studies.measures.costs import cheapest_kept
-from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
+from studies.measures.differences import WELL_CONDITIONED, beside, sensitivity_of
 from studies.measures.presets import pasted_of
 from studies.measures.published import PUBLISHED
 from studies.measures.wrongness import KINDS, counted, in_kinds, wrong_in
@@ -40,16 +42,22 @@ from studies.sources.registry import scene_of
 
 Line: TypeAlias = "Mapping[Any, Any]"
 """A line of a table."""
-SEED, CASES, FRICTION = 55, {False: 60, True: 10}, 0.8
-"""Of the random boxes: the seed, how many in full and quickly, and the friction."""
+SEED, FRICTION = 55, 0.8
+"""Of the random boxes."""
+CASES: Mapping[Kind, tuple[int, int]] = {"pulse": (60, 10), "record": (20, 1), "lean": (20, 3)}
+"""How many boxes in full, and quickly, by what moves them."""
+IN_WORDS = {"pulse": "under pulses", "record": "under a record", "lean": "let go leaning"}
+"""What moves a box, in words."""
 STEPS_S = 1e-3, 2e-3
 """A user's step [s]; the second where the first is the library's own."""
 BLOCK = RigidBlock(width=0.5, height=1.5)
 """Of which lines are published."""
 ROWS = 24
 """Of a screen."""
-ADVICE, LINES = "advice", "lines"
-NEEDED = tuple(f"advice/{name}.csv" for name in (ADVICE, LINES))
+ADVICE, LINES, BY_KIND = "advice", "lines", "kinds"
+SETTING = "engine", "dt_s", "preset"
+"""Columns that tell one setting from another."""
+NEEDED = tuple(f"advice/{name}.csv" for name in (ADVICE, LINES, BY_KIND))
 """The tables of advice."""
 
 
@@ -69,7 +77,7 @@ def command(
 
     For one engine it prints the lines to paste, their errors on 60 random boxes, where they fail,
     and their sources; for several engines the errors only. It reads the published tables, and runs
-    nothing. With --out it measures them again, in ten minutes.
+    nothing. With --out it measures them again, in half an hour.
 
     Parameters
     ----------
@@ -85,7 +93,7 @@ def command(
     out
         Folder for the tables of a new run; none by default.
     quick
-        With --out: 10 boxes instead of 60.
+        With --out: 14 boxes instead of 100.
     """
     asked = engines or tuple(OWN)
     if out is not None:
@@ -114,11 +122,15 @@ def command(
 
 def jobs(engines: Sequence[str], quick: bool) -> list[Job]:
     """Return the jobs: engine by engine, at its own step and a user's, by default and pasted."""
-    boxes = list(islice(free_boxes(SEED), CASES[quick]))
+    boxes = [
+        box
+        for kind, counts in CASES.items()
+        for box in islice(free_boxes(SEED, kind), counts[quick])
+    ]
     return [
         Job(
             labels={"engine": engine, "preset": preset, "dt_s": dt_s, **asdict(box)},
-            case=Question(system=box.block, motion=box.motion),
+            case=Question(system=box.block, motion=box.shaking, start=box.start),
             source=f"{engine}:{preset}",
             options={"friction": FRICTION, "step": dt_s * box.block.p},
         )
@@ -136,25 +148,41 @@ def steps_of(engine: str) -> tuple[float, float]:
 
 
 def measure(job: Job) -> Row:
-    """Return the columns of a row, with how far a box slid and turned about the vertical."""
+    """Return the columns of a row, with how far a box slid and turned, and the exact answer."""
     response = ask(job)
     slid, yaw = response.slip_m / job.case.system.width, response.observables.get(YAW, math.nan)
-    return {**summary(response), "slip_widths": slid, "yaw_deg": yaw}
+    return {**summary(response), "slip_widths": slid, "yaw_deg": yaw, **_exact(job.case)}
+
+
+@cache  # one for all sources
+def _exact(case: Question) -> Row:
+    block = cast(RigidBlock, case.system)
+    exact = simulate(block, case.motion, start=case.start)
+    kappas = conditioning(block, case.motion, start=case.start)
+    return {
+        **dict(zip(("kappa", "kappa_eta"), kappas, strict=True)),
+        "sensitivity": sensitivity(block, case.motion, start=case.start),
+        "exact_peak": exact.peak_ratio,
+        "exact_outcome": exact.outcome.value,
+    }
 
 
 def tabulate(rows: pd.DataFrame) -> Tables:
-    """Return the rows beside the exact solution, a line for each setting, and lines to paste."""
-    boxes = with_reference(rows)
-    groups = boxes.groupby(["engine", "dt_s", "preset"], sort=False)
-    advice = pd.DataFrame(
-        [{**dict(zip(groups.keys, key, strict=True)), **_line(group)} for key, group in groups]
-    )
+    """Return the rows with their errors, a line for each setting, and lines to paste."""
+    boxes = beside(rows)
+    advice = _lines(boxes, *SETTING)
     lines = [
         {"engine": engine, "dt_s": dt_s, "literal": line}
         for engine, dt_s in advice[["engine", "dt_s"]].drop_duplicates().itertuples(index=False)
         for line in pasted_lines(engine, BLOCK, dt_s, FRICTION)
     ]
-    return {"boxes": boxes, ADVICE: advice, LINES: pd.DataFrame(lines)}
+    tables = {"boxes": boxes, ADVICE: advice, BY_KIND: _lines(boxes, *SETTING, "kind")}
+    return {**tables, LINES: pd.DataFrame(lines)}
+
+
+def _lines(boxes: pd.DataFrame, *keys: str) -> pd.DataFrame:
+    groups = boxes.groupby([*keys], sort=False)
+    return pd.DataFrame([dict(zip(keys, key, strict=True)) | _line(of) for key, of in groups])
 
 
 def _line(group: pd.DataFrame) -> Row:
@@ -220,8 +248,22 @@ def shown(tables: Tables) -> Tables:
         "Random boxes at a friction of 0.8; ill_max_error where S ≥ 10": tables[ADVICE][
             [*columns, "yaw_deg", "slip_widths", "wall_s"]
         ],
+        "By what moves the box, all engines": by_kind(tables[BY_KIND]),
         "Not advised": pd.DataFrame({"engine": [*bad], "why": [*bad.values()]}),
     }
+
+
+def by_kind(kinds: pd.DataFrame) -> pd.DataFrame:
+    """Return outcomes and the typical engine's errors before and after, by what moves a box."""
+    before = kinds["preset"].eq(AT_REST).map({True: DEFAULT, False: PASTED})
+    wrong = kinds[list(KINDS)].sum(axis=1)
+    groups = kinds.assign(settings=before, wrong=wrong).groupby(["kind", "settings"], sort=False)
+    return groups.agg(
+        cases=("cases", "sum"),
+        wrong=("wrong", "sum"),
+        median_error=("median_error", "median"),
+        max_error=("max_error", "median"),
+    ).reset_index()
 
 
 def pasted_lines(engine: str, block: RigidBlock, dt_s: float, friction: float) -> list[str]:
@@ -250,7 +292,8 @@ def screen(engine: str, block: RigidBlock, dt_s: float, friction: float) -> list
         below = [f"{boxes}; errors of the {advice['survivors'].max()} survivors with S < 10:"]
         below += worth(advice).splitlines()
         below += _filled("NOT ADVISED", unadvised(advice).get(engine, ""))
-        below += _filled("Fails", fails(advice))
+        kinds = table_in(PUBLISHED / "advice", BY_KIND)
+        below += _filled("Fails", fails(kinds[kinds["engine"] == engine]))
     sources = [f"{it.setting}: {it.value} ({it.where})" for it in use.documented]
     below += _filled("Sources", "; ".join(sources) or "measured here, `rocking contact`")
     below += _filled("YOUR FLOOR MOVES", moving(engine))
@@ -291,12 +334,16 @@ def worth(advice: pd.DataFrame) -> str:
     return aligned([heads, *cells], [False, False, *[True] * 6])
 
 
-def fails(advice: pd.DataFrame) -> str:
+def fails(kinds: pd.DataFrame) -> str:
     """Say where pasted lines still fail."""
-    lines = advice[advice["preset"] != AT_REST]
+    lines = kinds[kinds["preset"] != AT_REST]
+    found = [
+        f"{in_kinds(of[list(KINDS)].sum())} {IN_WORDS[str(kind)]}"
+        for kind, of in lines.groupby("kind", sort=False)
+    ]
     slid = f"the pivot slides by up to {part(lines['slip_widths'].max())} of B"
     plane = "; the library is planar" if lines["yaw_deg"].isna().all() else ""
-    return f"{in_kinds(lines[list(KINDS)].sum())}; {slid}{plane}"
+    return f"{'; '.join(found)}; {slid}{plane}"
 
 
 def moving(engine: str) -> str:

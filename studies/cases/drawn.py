@@ -3,15 +3,18 @@
 import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
+from functools import cache
 from itertools import count
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from analytic import RockingFrame, SlidingBlock, conditioning, frame_demands, simulate
-from analytic.block import RigidBlock
+from analytic.block import GRAVITY, RigidBlock
 from analytic.frame import Rocker
-from analytic.motion import SinePulse
+from analytic.motion import Motion, SinePulse
+from analytic.record import Record
 from engines.scene import BEAM_DEPTH, SPACING
 
 LEAST_NORMAL = 0.2
@@ -26,6 +29,10 @@ SLIPS = 1e-3, 10.0
 """Least slip and longest way, over B, of a slide: shorter is not told from a tremor."""
 Drawn = Literal["block", "frame"]
 """Scenes of which random cases are drawn."""
+Kind = Literal["pulse", "record", "lean"]
+"""What moves a box: a pulse; the example record, at a peak; a pulse, from a lean."""
+EXAMPLE = Path(__file__).parents[1] / "blocks" / "example.AT2"
+"""The example record."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +72,29 @@ class RandomFrame(RandomCase):
         return RockingFrame(width=self.width_m, height=height, columns=self.columns, load=self.load)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RandomBox(RandomCase):
+    """A box, what moves it, and where it starts [alpha]; a record has a peak alone of a pulse."""
+
+    kind: Kind
+    lean: float = 0.0
+
+    @property
+    def shaking(self) -> Motion:
+        """The pulse, or the record."""
+        return _example(self.amplitude_g) if self.kind == "record" else self.motion
+
+    @property
+    def start(self) -> tuple[float, float]:
+        """Where it is let go at t = 0: rotation [rad], and no rate."""
+        return self.lean * self.block.alpha, 0.0
+
+
+@cache
+def _example(peak_g: float) -> Record:
+    return Record.read(EXAMPLE).scaled_to(peak_g * GRAVITY)
+
+
 def draw(seed: int, scene: Drawn = "block") -> Iterator[RandomCase]:
     """Yield without end random cases of which the reference is sure, the same for a seed."""
     kept = filter(_is_sure, _everything(seed, scene))
@@ -81,22 +111,26 @@ def calm_frames(seed: int) -> Iterator[RandomFrame]:
                 yield drawn
 
 
-def free_boxes(seed: int) -> Iterator[RandomCase]:
+def free_boxes(seed: int, kind: Kind = "pulse") -> Iterator[RandomBox]:
     """Yield boxes that rock on a floor at a friction of 0.8, without end, the same for a seed."""
     generator = np.random.default_rng(seed)
     kept = count()
     while True:
         drawn = generator.uniform([0.3, 2.0, 1.1, 0.8], [1.0, 4.5, 1.8, 4.0]).tolist()
         width, aspect, onsets, frequency = drawn
-        box = RandomCase(
+        box = RandomBox(
             case=0,
             aspect=aspect,
             width_m=width,
             half_cycles=int(generator.integers(1, 3)),
-            amplitude_g=onsets / aspect,
+            amplitude_g=onsets / aspect * (1.1 if kind == "record" else 1.0),
             omega_over_p=frequency,
+            kind=kind,
+            lean=float(generator.uniform(-0.6, 0.6)) if kind == "lean" else 0.0,
         )
-        if simulate(box.block, box.motion).friction_needed <= MOST_NEEDED and _is_sure(box):
+        exact = simulate(box.block, box.shaking, start=box.start)
+        swings = exact.peak_ratio > 1.01 * abs(box.lean)  # beyond where it was let go
+        if swings and exact.friction_needed <= MOST_NEEDED and exact.min_normal > LEAST_NORMAL:
             yield replace(box, case=next(kept))
 
 

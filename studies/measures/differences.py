@@ -25,8 +25,7 @@ OF_FRAMES = ("exact_outcome", "exact_peak", "agrees", "error", "kappa", "kappa_e
 
 def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     """Add the exact outcome and peak of every case, and the difference of each row from them."""
-    # error and difference are nan where the outcome is wrong or the exact block does not rock and
-    # survive; kappa, kappa_eta and sensitivity where no peak survives
+    # kappa, kappa_eta and sensitivity are nan where no peak survives
     posed, eta, back = _different(rows)
     peak, outcome = peak_ratios(*posed, restitution=eta)
     condition = condition_numbers(*posed, restitution=eta)
@@ -37,17 +36,24 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
         exact_peak=peak[back],
         exact_outcome=[str(getattr(it, "value", it)) for it in outcome[back]],
     )
+    compared = beside(joined)
+    return compared[[*rows, *OF_FRAMES]] if "load" in rows else compared
+
+
+def beside(joined: pd.DataFrame) -> pd.DataFrame:
+    """Add the difference of each row from its exact outcome and peak."""
+    # error and difference are nan where the outcome is wrong or the exact block does not rock and
+    # survive
     found, right = joined["outcome"], joined["exact_outcome"]
     agrees = wrong_in(joined) == ""
     both_rock = agrees & (right == "rocked")
-    compared = joined.assign(
+    return joined.assign(
         agrees=agrees,
         error=(joined["peak_ratio"] / joined["exact_peak"] - 1.0).where(both_rock),
         difference=(joined["peak_ratio"] - joined["exact_peak"]).where(both_rock),
         false_overturning=(found == "overturned") & (right != "overturned"),
         missed_overturning=(right == "overturned") & found.isin(["rocked", "at rest"]),
     )
-    return compared[[*rows, *OF_FRAMES]] if "load" in rows else compared
 
 
 Posed: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, FloatArray]

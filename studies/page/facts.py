@@ -15,7 +15,8 @@ from engines.declaration import AT_REST, Help, Stepping
 from engines.factors import BEST, DEFAULT, LEFT_OUT
 from engines.registry import OWN
 from engines.run.export import broken
-from studies.advise import cheapest, pairs
+from studies.advise import IN_WORDS, cheapest, pairs
+from studies.advise import by_kind as advised_by_kind
 from studies.advise import unadvised as not_advised
 from studies.kit.identity import NOT_INSTALLED
 from studies.kit.say import capital, duration, listed, number, part, signed
@@ -138,6 +139,18 @@ def pasted(published: Path) -> list[dict[str, Any]]:
             }
         )
     return found
+
+
+def by_kind(published: Path) -> list[list[str]]:
+    """Return outcomes and typical errors before and after, by what moves a box."""
+    lines = advised_by_kind(table_in(published / "advice", "kinds"))
+    cells = []
+    for kind, both in lines.groupby("kind", sort=False):
+        wrong, cases = both["wrong"].map(str), both["cases"].max()
+        errors = (both[name].map(part) for name in ("median_error", "max_error"))
+        shown = (wrong, *errors)
+        cells.append([IN_WORDS[str(kind)], str(cases), *map(" → ".join, shown)])
+    return cells
 
 
 def unadvised(published: Path) -> dict[str, str]:

@@ -2,10 +2,13 @@
 
 import math
 
+import numpy as np
 import pandas as pd
 import pytest
 from given import BLOCK
 
+from analytic import simulate
+from analytic.block import GRAVITY
 from engines import ENGINES
 from engines.declaration import AT_REST, PASTED
 from engines.registry import OWN
@@ -56,7 +59,7 @@ def test_advice_is_one_screen(engine, capsys):
 
 def test_the_published_advice_follows_from_its_boxes():
     boxes, advice = (table_in(PUBLISHED / "advice", name) for name in ("boxes", "advice"))
-    assert set(advice["engine"]) == set(OWN) and set(advice["cases"]) == {60}
+    assert set(advice["engine"]) == set(OWN) and set(advice["cases"]) == {100}
     calm = boxes[sensitivity_of(boxes) < WELL_CONDITIONED]
     for line in advice.to_dict("records"):
         same = [calm[name] == line[name] for name in ("engine", "dt_s", "preset")]
@@ -91,7 +94,7 @@ def test_a_setting_is_advised_where_median_and_largest_error_fall_at_both_steps(
 def test_ten_free_boxes_rock_right_with_pasted_lines(friction, monkeypatch):
     pytest.importorskip("pybullet")
     monkeypatch.setattr("studies.advise.FRICTION", friction)
-    asked = jobs(CORE, quick=True)
+    asked = [job for job in jobs(CORE, quick=True) if job.labels["kind"] == "pulse"]
     rows = [{**job.labels, "source": job.source, **STUDY.measure(job)} for job in asked]
     advice = STUDY.tabulate(pd.DataFrame(rows))["advice"]
     assert unadvised(advice) == {} and len(advice) == 8
@@ -100,6 +103,18 @@ def test_ten_free_boxes_rock_right_with_pasted_lines(friction, monkeypatch):
     assert advice.loc[advice["preset"] == AT_REST, "max_error"].min() > 1e-2
     steps = {job.labels["dt_s"] for job in asked if job.labels["engine"] == "mujoco"}
     assert steps == {*steps_of("mujoco")} == {2e-3, 1e-3}
+
+
+def test_boxes_are_moved_by_pulses_by_a_record_and_from_a_lean():
+    asked = jobs(["mujoco"], quick=True)[:14]
+    assert [job.labels["kind"] for job in asked] == [*["pulse"] * 10, "record", *["lean"] * 3]
+    assert {job.case.start for job in asked[:11]} == {(0.0, 0.0)}
+    for job in asked[10:]:
+        lean, least = job.labels["lean"], simulate(job.case.system, job.case.motion).peak_ratio
+        assert job.case.start[0] == lean * job.case.system.alpha
+        peak_g = abs(job.case.motion.acceleration(np.linspace(0.0, 20.0, 100_001))).max() / GRAVITY
+        assert peak_g == pytest.approx(job.labels["amplitude_g"], rel=1e-4)
+        assert least > 0.0 and (0.0 < abs(lean) < 0.6) == (job.labels["kind"] == "lean")
 
 
 @pytest.mark.parametrize("target", [1.0, 1e-2, 1e-9])
