@@ -19,7 +19,7 @@ from studies.scenes import finding, jobs, measure, tabulate
 
 FRAME_ROW = {
     **{"scene": "frame", "source": "pymunk:tuned", "columns": 2, "load": 2.0, "amplitude_g": 0.4},
-    **{"omega": 6.2832, "phase": 0, "reason": ""},
+    **{"omega_over_p": 2.0, "case": 0, "reason": ""},
     **{"outcome": "rocked", "steps": 10, "wall_s": 1e-3, "exact": 0.2, "right": True},
     **{"error": 1e-3, "parting": 0.0, "tilt": 0.0, "drift_m": 0.0},
 }
@@ -67,24 +67,22 @@ def test_the_finding_takes_the_worst_engine_of_the_best_presets():
         "source": ["exact", "mujoco:default", "mujoco:landing", "box2d:default"],
         "max_error": [0.0, 0.5, 1e-5, 0.2], "wrong": [0, 3, 0, 1],
     })  # fmt: skip
-    names = ("random-frame-summary", "random-slide-summary", "frame-summary", "slide-summary")
-    none = dict.fromkeys(names, pd.DataFrame())
-    words = finding(none | {"random-frame-summary": frames})
+    none = dict.fromkeys(("frame-summary", "slide-summary"), pd.DataFrame())
+    words = finding(none | {"frame-summary": frames})
     assert "20 %" in words and "1 wrong" in words and "50 %" not in words
     slides = pd.DataFrame({
         "source": ["exact", "drake:default"], "max_error": 0.0, "wrong": [0, 1],
         "thrown_off": [0, 1],
     })  # fmt: skip
-    words = finding(none | {"random-slide-summary": slides})
+    words = finding(none | {"slide-summary": slides})
     assert "1 wrong" in words and "Drake" in words
     assert "None" in finding(none | {"slide-summary": slides[:1]})
 
 
-def test_random_frames_are_summed_up_beside_the_critical_rotation():
-    near = {**FRAME_ROW, "scene": "random-frame", "half_cycles": 2}
-    rows = [{**near, "error": error} for error in (1e-3, -1e-3, 2e-3, -0.5)]
+def test_frames_are_summed_up_beside_the_critical_rotation():
+    rows = [{**FRAME_ROW, "error": error} for error in (1e-3, -1e-3, 2e-3, -0.5)]
     lost = {"error": math.nan, "outcome": "failed", "right": False, "reason": "PARTED"}
-    (line,) = of([*rows, {**near, **lost}], "random-frame-summary")
+    (line,) = of([*rows, {**FRAME_ROW, **lost}], "frame-summary")
     assert (line["frames"], line["wrong"], line["parted"]) == (5, 1, 1)
     assert (line["median_error"], line["max_error"]) == pytest.approx((1.5e-3, 0.5))
     assert line["p90_difference"] == pytest.approx(0.2 * np.quantile([1e-3, 1e-3, 2e-3, 0.5], 0.9))
@@ -101,16 +99,14 @@ def test_random_cases_are_calm_or_slide_as_far_as_can_be_seen():
         assert min(ways) > 1e-3 and sum(ways) < 10.0
 
 
-def test_equal_steps_are_shifted_by_parts_of_a_step():
-    asked = [
-        job for job in jobs(["pymunk:tuned", "mujoco"], False) if job.labels["scene"] == "frame"
-    ]
-    mine = asked[:4]
-    impact = simulate(mine[0].case.system, mine[0].case.motion).impacts[0].time
-    places = [impact * job.case.system.p / job.options["step"] % 1.0 for job in mine]
-    shifts = [(places[0] - place) % 1.0 for place in places]
-    assert shifts == pytest.approx([0.0, 0.25, 0.5, 0.75], abs=1e-3)
-    assert len(asked) == 18 * (4 + 1) and asked[4].options == {}
+def test_landing_steps_are_asked_about_frames_alone_and_every_source_about_the_same_cases():
+    asked = jobs(["pymunk:tuned", "mujoco"], False)
+    of_whom = [(job.labels["scene"], job.source) for job in asked]
+    counts = {kind: of_whom.count(kind) for kind in of_whom}
+    frames = {("frame", "pymunk:tuned"): 60, ("frame", "mujoco"): 60}
+    assert counts == {**frames, ("slide", "pymunk:tuned"): 61}
+    for one, other in zip(asked[:120:2], asked[1:120:2], strict=True):
+        assert one.case == other.case and one.labels == other.labels
 
 
 def test_rows_are_measured_and_a_process_that_ended_is_a_row():
