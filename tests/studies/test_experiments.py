@@ -70,11 +70,16 @@ def test_a_folder_is_read(rocks):
 
 @pytest.mark.slow
 def test_the_command_tells_every_test_that_has_a_record(rocks, tmp_path):
-    assert run(["experiments", "--rocks", str(rocks), "--out", str(tmp_path / "out")]) == 0
+    asked = ["experiments", "--rocks", str(rocks), "--out", str(tmp_path / "out"), "--tests", "3"]
+    assert run([*asked, "--sources", "exact", "mujoco:recommended"]) == 0
     tables = STUDY.read(tmp_path / "out")
     assert tables["rock-1"]["test"].tolist() == [13, 14, 15, 16]
     shares = tables["shares"].set_index(["rock", "source"])
     assert shares.loc[(1, "authors"), ["tests", "share", "alarms"]].tolist() == [4, 1.0, 0]
+    assert (tables["engines"]["tests"] == 3).all()
+    mesh = tables["outcomes"].set_index(["rock", "block", "test"]).loc[1, "mesh, weak side right"]
+    exact = tables["rock-1"].set_index("test")["mesh, weak side right"]
+    assert (mesh["outcome"] == "overturned").astype(float).eq(exact[mesh.index]).all()
 
 
 def test_shares_are_those_of_what_the_rows_say():
