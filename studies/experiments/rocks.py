@@ -69,8 +69,7 @@ def jobs(sources: Sequence[str], folder: Path, most: int | None) -> list[Job]:
         for rock, name, block in posed:
             case = Question(system=block, motion=lifting(motion, block))
             labels = {**test, "rock": rock, "block": name}
-            engines = (source for source in sources if source != EXACT)
-            found += [Job(labels=labels, case=case, source=source) for source in engines]
+            found += [Job(labels=labels, case=case, source=it) for it in sources if it != EXACT]
     return found
 
 
@@ -119,11 +118,9 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     }
     folds = np.random.default_rng(SEED).permutation(len(tests)) % FOLDS
     tables, lines, areas, engines = {}, list[Row](), list[Row](), list[Row]()
-    runs = rows[rows["source"] != EXACT]
+    exacts, runs = (rows[(rows["source"] == EXACT) == it] for it in (True, False))
     for rock in MESHES:
-        found = rows[(rows["rock"] == rock) & (rows["source"] == EXACT)].pivot(
-            index="test", columns="block"
-        )
+        found = exacts[exacts["rock"] == rock].pivot(index="test", columns="block")
         fell = tests[f"fell_{rock}"].to_numpy()
         table = strong.assign(margin=found["margin", "margin"], fell=fell)
         every = pd.DataFrame(index=tests.index)
