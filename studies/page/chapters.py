@@ -75,10 +75,6 @@ PUBLISHED_WITH = {
     "contact-frames": "--engines pybullet mujoco pymunk box2d dart",
     "stability": "--sources exact rk4 average-acceleration dop853 radau engines engines:tuned "
     "engines:recommended engines:default",
-    "rocks": "--tests 150 --sources exact mujoco:default pybullet:default pymunk:default "
-    "box2d:default dart:default rapier:default physx:default mujoco:recommended "
-    "pybullet:recommended pymunk:recommended box2d:recommended dart:recommended "
-    "rapier:recommended physx:recommended mujoco:tuned",
     "scenes": "--sources engines engines:tuned engines:recommended engines:default",
 }
 """Folder -> arguments of the published run, where they are others than those of a full one."""
