@@ -91,9 +91,11 @@ class Body:
     def inertia(self) -> tuple[float, float, float]:
         """Moments of inertia [kg m2] about the centre of mass and the axes x, y, z."""
         x, y, z = self.width, self.depth, self.height
+        # a moment that is stated widens x and z alike, so that some body has all three
+        wide = 1.0 if self.square is None else 12.0 * self.square / (x * x + z * z)
         twelfth = self.mass / 12.0
         turning = twelfth * (x * x + z * z) if self.square is None else self.mass * self.square
-        return (twelfth * (y * y + z * z), turning, twelfth * (x * x + y * y))
+        return (twelfth * (y * y + wide * z * z), turning, twelfth * (wide * x * x + y * y))
 
 
 class Contact(NamedTuple):

@@ -301,6 +301,12 @@ def test_a_mirrored_block_has_the_mirrored_response(engine):
     assert min(right) > 0.03
 
 
+def test_a_large_moment_of_inertia_is_that_of_some_body():  # MuJoCo refuses others
+    block = RigidBlock(width=0.6, height=1.8, inertia=0.6)  # twice as if its mass were even
+    exact, found = agreed("mujoco", Still(), system=block, preset="tuned", start=(0.1, 0.0))
+    assert found.peak_sides == pytest.approx(exact.peak_sides, rel=1e-3)
+
+
 @pytest.mark.parametrize("engine", HOLDING)
 def test_a_block_that_turns_on_its_strong_side_falls_over_the_weak_one(engine):
     """It sets out from where an even one would, though its mass is elsewhere and as fast."""

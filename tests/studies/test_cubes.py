@@ -9,7 +9,7 @@ from commanding import refused
 from scipy.spatial.transform import Rotation
 
 from studies.experiments import STUDY
-from studies.experiments.cubes import AUTHORS, HALF, HZ, SETTINGS, WORLDS, off, read_tosses
+from studies.experiments.cubes import AUTHORS, HALF, HZ, SETTINGS, WORLDS, off, read_tosses, turned
 from studies.kit.tables import packed
 
 TIMES = np.arange(60) / HZ
@@ -50,8 +50,7 @@ def test_a_cube_flies_lands_and_lies(tosses, engine):
     path = toss[0, :3] + toss[0, 7:10] * times[:, None]
     path[:, 2] -= 0.5 * 9.81 * times**2
     np.testing.assert_allclose(found[:3, :3], path, atol=2e-4)
-    turn = Rotation.from_quat(found[2, [4, 5, 6, 3]])
-    start = Rotation.from_quat(toss[0, [4, 5, 6, 3]])
+    start, turn = turned(np.array([toss[0, :7], found[2]]))
     assert (start.inv() * turn).as_rotvec() == pytest.approx(OMEGA * times[2], abs=1e-3)
     assert found[-1, 2] == pytest.approx(HALF, abs=1e-3)
     assert off(found, found)[:3] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)

@@ -11,7 +11,7 @@ from commanding import refused
 from studies.__main__ import run
 from studies.cases.rocks import DT, FELL, MESHES, TABLE, TUNED, read_mesh, read_motion, read_tests
 from studies.experiments import STUDY
-from studies.experiments.rocks import FACTORS, GRID
+from studies.experiments.rocks import FACTORS, FITTED, GRID
 
 SPACE = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
 FACES = ["124", "143", "578", "586", "156", "162", "348", "387", "137", "175", "268", "284"]
@@ -70,26 +70,35 @@ def test_a_folder_is_read(rocks):
 
 @pytest.mark.slow
 def test_the_command_tells_every_test_that_has_a_record(rocks, tmp_path):
-    assert run(["experiments", "--rocks", str(rocks), "--out", str(tmp_path / "out")]) == 0
+    asked = f"experiments --rocks {rocks} --out {tmp_path / 'out'} --tests 3 --sources exact pymunk"
+    assert run(f"{asked}:default".split()) == 0
     tables = STUDY.read(tmp_path / "out")
     assert tables["rock-1"]["test"].tolist() == [13, 14, 15, 16]
     shares = tables["shares"].set_index(["rock", "source"])
     assert shares.loc[(1, "authors"), ["tests", "share", "alarms"]].tolist() == [4, 1.0, 0]
+    assert len(tables["outcomes"]) == 12 and (tables["engines"]["tests"] == 3).all()
 
 
 def test_shares_are_those_of_what_the_rows_say():
-    """Of 20 tests 10 fell; the third block of the grid is wrong in 2, the authors in 5."""
-    test, fell = np.arange(20), np.arange(20) % 2
-    letters = np.where(fell != (test < 2), "--f", "---") + np.array("?" * (len(GRID) - 3))
+    """Of 20 tests 10 fell; a block of the grid is wrong in 2, the authors in 5, an engine in 1."""
+    test, fell, place = np.arange(20), np.arange(20) % 2, GRID.index(FITTED[1])
+    ends = np.where(fell != (test < 2), "f", "-")
+    letters = [f"{'-' * place}{end}".ljust(len(GRID), "?") for end in ends]
     base = {"test": test, "pga_g": 0.1 + 0.01 * fell, "pgv_m_s": 0.1 + 0.01 * fell}
-    base |= {f"fell_{rock}": fell for rock in MESHES}
+    base |= {f"fell_{rock}": fell for rock in MESHES} | {"source": "exact", "peak_ratio": 0.0}
     base |= {f"authors_{rock}": np.where(test < 5, 1 - fell, fell) for rock in MESHES}
     found = base | {"outcome": "found", "margin": np.where(fell, FACTORS[0], np.inf)}
     rows = [pd.DataFrame(found | {"rock": 0, "block": "grid", "grid": letters})]
     for rock in MESHES:
         rows.append(pd.DataFrame(found | {"rock": rock, "block": "margin"}))
         rows.append(pd.DataFrame(base | {"rock": rock, "block": "x", "outcome": "failed"}))
-    tables = STUDY.tabulate(pd.concat(rows))
+    outcome = np.where(test == 5, "failed", np.where(fell, "overturned", "rocked"))
+    new = {"rock": 1, "block": "best fit", "source": "new", "outcome": outcome}
+    tables = STUDY.tabulate(pd.concat([*rows, pd.DataFrame(base | new)[:10]]))
+    line = tables["engines"].set_index("source").loc["new"]
+    wanted = {"tests": 10, "share": 0.9, "gain_exact": 0.1, "gain_rule": -0.1, "p_exact": 1.0,
+              "differ": 3, "no_result": 1}  # fmt: skip
+    assert line[[*wanted]].tolist() == pytest.approx([*wanted.values()])
     shares = tables["shares"].set_index(["rock", "source"])
     assert shares.loc[1, "share"].tolist() == [0.9, 1.0, 0.75, 0.0, 0.9, 1.0]
     line = shares.loc[(1, "exact")]
@@ -114,3 +123,4 @@ def test_another_folder_is_refused(rocks, capsys, tmp_path, name, text, part):
     refused(capsys, [*asked, "--rocks", rocks], "--rocks", part)
     refused(capsys, [*asked, "--rocks", tmp_path], "--rocks", "Results_Granite.xlsx")
     refused(capsys, asked, "--rocks", "--cubes")
+    refused(capsys, [*asked, "--cubes", rocks, "--tests", 3], "--tests", "--rocks")
