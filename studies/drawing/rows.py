@@ -134,7 +134,7 @@ def draw_conditioning(errors: pd.DataFrame) -> Figure:
     sources = list(errors["source"].unique())
     bands = {ends: sizes[sizes["s"].between(*ends, inclusive="left")] for ends in pairwise(BANDS)}
     bands = {ends: cases for ends, cases in bands.items() if len(cases)} or {BANDS[:2]: sizes}
-    each = (9.4 / len(bands), 0.9 + 0.32 * len(sources))
+    each = (10.4 / len(bands), 0.9 + 0.26 * len(sources))
     drawing, grid = panels(len(bands), len(bands), each, 1.1, sharex=True, sharey=True)
     low, high = sizes["size"].clip(lower=LOWEST).agg(["min", "max"]).fillna(1.0)
     grid[0].set(xscale="log", xlim=(0.5 * low, 2.0 * max(high, 1.0)))
@@ -151,6 +151,7 @@ def draw_conditioning(errors: pd.DataFrame) -> Figure:
             )  # fmt: skip
         words = f"from {start:g}" if end == inf else f"{start:g} to {end:g}" if start else "below 3"
         axes.set_title(f"S {words}: {cases['case'].nunique()} cases", fontsize=10)
+        axes.tick_params("x", labelsize=8.0)
     drawing.supxlabel(
         "relative error of the peak;  S: by how many per cent a peak moves for 1 % of the pulse "
         "or of an impact's velocity ratio",

@@ -66,7 +66,8 @@ def statements(tables: Tables) -> list[tuple[bool, str]]:
 
 
 PUBLISHED_WITH = {
-    "validate": "--sources engines physx:default physx:recommended physx:tuned",
+    "validate": "--sources engines engines:default engines:default-at-rest engines:recommended "
+    "engines:tuned",
     "estimate": "--sources engines engines:tuned engines:default",
     "precision": "--sources exact rk45 dop853 radau lsoda rk4 average-acceleration housner "
     "modified onset-matched engines",
