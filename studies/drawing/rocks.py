@@ -6,8 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.drawing.facets import dot, key, rows, sheet
-from studies.drawing.styles import full_name
+from studies.drawing.facets import sheet
 
 LABELS = {"pga_g": "PGA", "pgv_m_s": "PGV"}
 
@@ -33,21 +32,4 @@ def draw_rocks(
         for axes in (above, below):
             axes.legend(fontsize=8, frameon=False)
             axes.grid(alpha=0.25)
-    return drawing
-
-
-def draw_engines(lines: pd.DataFrame) -> Figure:
-    """Draw what each source gets right with each block, within 95 %, of each rock."""
-    blocks, sources = lines["block"].unique(), list(lines["source"].unique())
-    drawing, grid = sheet((8.6, 1.2 + 0.3 * len(sources)), 1, len(blocks), sharey=True)
-    colours = {rock: f"C{rock - 1}" for rock in lines["rock"].unique()}
-    for axes, block in zip(grid, blocks, strict=True):
-        rows(axes, ["two thresholds" if name == "rule" else full_name(name) for name in sources])
-        for line in lines[lines["block"] == block].to_dict("records"):
-            place = sources.index(line["source"]) + 0.36 * (line["rock"] - 1.5)
-            colour = colours[line["rock"]]
-            axes.plot([line["share_low"], line["share_high"]], 2 * [place], color=colour)
-            axes.plot(line["share"], place, "o", ms=4.5, color=colour)
-        axes.set(xlabel="part of the tests that is right", title=block)
-    key(drawing, [dot(f"rock {rock}", "o", colour) for rock, colour in colours.items()])
     return drawing

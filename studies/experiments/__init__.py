@@ -68,8 +68,6 @@ hour. Name one folder.""",
         "rocks": "What fell and what stood, over PGA and PGV, with the tests that all get wrong; "
         "and how well the margin of the block that fits all tests, PGA and PGV tell one from the "
         "other (ROC curves).",
-        "engines": "Part of the tests that each source predicts, within 95 %, with the block that "
-        "fits the exact model best and with that of the mesh.",
         "cubes": "Mean loss of tosses that no fit here has seen, within 95 %, and the part of them "
         "that ends on the right face. The authors' settings were fitted to all tosses.",
     },

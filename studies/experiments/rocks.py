@@ -247,7 +247,6 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw what fell over PGA and PGV, and the ROC curves."""
-    from studies.drawing.rocks import draw_engines, draw_rocks
+    from studies.drawing.rocks import draw_rocks
 
-    engines = {"engines": draw_engines(tables["engines"])} if "engines" in tables else {}
-    return {"rocks": draw_rocks(tables, SCORES, lost_by_all(tables)), **engines}
+    return {"rocks": draw_rocks(tables, SCORES, lost_by_all(tables))}

@@ -73,9 +73,12 @@ PUBLISHED_WITH = {
     "modified onset-matched engines",
     "batch": "--device cuda",
     "contact": "--engines pybullet mujoco pymunk box2d dart rapier drake newton physx",
-    "contact-frames": "--engines pybullet mujoco pymunk box2d dart",
     "stability": "--sources exact rk4 average-acceleration dop853 radau engines engines:tuned "
     "engines:recommended engines:default",
+    "rocks": "--tests 150 --sources exact mujoco:default pybullet:default pymunk:default "
+    "box2d:default dart:default rapier:default physx:default mujoco:recommended "
+    "pybullet:recommended pymunk:recommended box2d:recommended dart:recommended "
+    "rapier:recommended physx:recommended mujoco:tuned",
     "scenes": "--sources engines engines:tuned engines:recommended engines:default",
 }
 """Folder -> arguments of the published run, where they are others than those of a full one."""
@@ -118,10 +121,6 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
     "Contact models": (
         Part("advice", "advise", quick=("--quick", "--engines", "pybullet", "mujoco")),
         Part("contact", "contact"),
-        Part(
-            *("contact-frames", "contact", "How much does each setting matter on frames?"),
-            always=("--scene", "frame"),
-        ),
         Part("restitution", "restitution", quick=()),
     ),
     "Stiff and extreme cases": (Part("stability", "stability"),),
