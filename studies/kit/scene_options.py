@@ -30,71 +30,50 @@ Pulse = Literal["half-sine", "full-sine"]
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Excitation:
-    """What happens to a block: a pulse or a record, or a release on ground that does not move.
-
-    Attributes
-    ----------
-    amplitude
-        Amplitude of the ground acceleration [g = 9.81 m/s²]; it must be positive, since a mirrored
-        pulse mirrors the response.
-    omega
-        Circular frequency of the pulse [rad/s].
-    pulse
-        half-sine or full-sine; full-sine unless --half-cycles is given.
-    half_cycles
-        Number of half cycles, instead of --pulse.
-    phase
-        Phase [rad] at the start of the pulse; 1.5708 makes it a cosine.
-    record
-        A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, a
-        table of time [s] and acceleration, or one column of acceleration.
-    record_dt
-        Time [s] between samples, for a file of one column.
-    units
-        Unit of the record's acceleration, for a file that does not state it; one that contradicts
-        the file is refused. g is 9.81 m/s².
-    scale
-        Factor on the record's acceleration.
-    pga
-        Scale the record to this largest absolute acceleration [g].
-    baseline
-        Before scaling, subtract the record's mean (constant) or best-fitting line (linear) with
-        scipy.signal.detrend. By default nothing is subtracted, and the velocity of the base at the
-        end is reported.
-    vertical
-        A recorded acceleration of the base upwards, in a file as of --record; --scale and --pga
-        leave it alone. The exact model and engines take it, but presets that land do not.
-    vertical_amplitude
-        Amplitude of a pulse of the base upwards [g], instead of --vertical; it may be negative.
-    vertical_omega
-        Circular frequency of that pulse [rad/s].
-    vertical_half_cycles
-        Its number of half cycles, 2 by default.
-    tilt
-        Initial rotation in units of α; a block with a positive one leans to the right. Without a
-        pulse or record the block is released on ground at rest.
-    rate
-        Initial angular velocity in units of αp; for an upright block its sign selects the corner
-        about which it turns.
-    """
+    """What happens to a block: a pulse or a record, or a release on ground that does not move."""
 
     amplitude: arguments.Positive | None = None
+    """Amplitude of the ground acceleration [g = 9.81 m/s²]; it must be positive, since a mirrored
+    pulse mirrors the response."""
     omega: arguments.Positive | None = None
+    """Circular frequency of the pulse [rad/s]."""
     pulse: Annotated[Pulse, arguments.one_of(Pulse)] | None = None
+    """half-sine or full-sine; full-sine unless --half-cycles is given."""
     half_cycles: arguments.HalfCycles | None = None
+    """Number of half cycles, instead of --pulse."""
     phase: arguments.Finite | None = None
+    """Phase [rad] at the start of the pulse; 1.5708 makes it a cosine."""
     record: arguments.Place | None = None
+    """A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, a
+    table of time [s] and acceleration, or one column of acceleration."""
     record_dt: arguments.Positive | None = None
+    """Time [s] between samples, for a file of one column."""
     units: Annotated[Units, arguments.one_of(Units)] | None = None
+    """Unit of the record's acceleration, for a file that does not state it; one that contradicts
+    the file is refused. g is 9.81 m/s²."""
     scale: arguments.Positive | None = None
+    """Factor on the record's acceleration."""
     pga: arguments.Positive | None = None
+    """Scale the record to this largest absolute acceleration [g]."""
     baseline: Annotated[Baseline, arguments.one_of(Baseline)] | None = None
+    """Before scaling, subtract the record's mean (constant) or best-fitting line (linear) with
+    scipy.signal.detrend. By default nothing is subtracted, and the velocity of the base at the end
+    is reported."""
     vertical: arguments.Place | None = None
+    """A recorded acceleration of the base upwards, in a file as of --record; --scale and --pga
+    leave it alone. The exact model and engines take it, but presets that land do not."""
     vertical_amplitude: arguments.Finite | None = None
+    """Amplitude of a pulse of the base upwards [g], instead of --vertical; it may be negative."""
     vertical_omega: arguments.Positive | None = None
+    """Circular frequency of that pulse [rad/s]."""
     vertical_half_cycles: arguments.HalfCycles | None = None
+    """Its number of half cycles, 2 by default."""
     tilt: arguments.Finite | None = None
+    """Initial rotation in units of α; a block with a positive one leans to the right. Without a
+    pulse or record the block is released on ground at rest."""
     rate: arguments.Finite | None = None
+    """Initial angular velocity in units of αp; for an upright block its sign selects the corner
+    about which it turns."""
 
     def pose(self, block: System) -> tuple[Motion, tuple[float, float]]:
         """Return the motion that the options mean, and θ [rad] and its rate [rad/s] at t = 0."""
@@ -209,25 +188,17 @@ def block_of(width: float, height: float) -> RigidBlock:
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Standing:
-    """What stands on the base.
-
-    Attributes
-    ----------
-    scene
-        block: one block that rocks. frame: a beam on columns that rock, of --width and --height
-        each, with --load. slide: one block that slides, by a --friction below B/H.
-    columns
-        Number of columns of a frame, from 2 to 100.
-    load
-        Mass of a frame's beam over the mass of all columns.
-    offset
-        Distance [m] of a block's mass to the right of the middle.
-    """
+    """What stands on the base."""
 
     scene: Annotated[SceneName, arguments.one_of(SceneName)] = "block"
+    """block: one block that rocks. frame: a beam on columns that rock, of --width and --height
+    each, with --load. slide: one block that slides, by a --friction below B/H."""
     columns: arguments.Count | None = None
+    """Number of columns of a frame, from 2 to 100."""
     load: arguments.Positive | None = None
+    """Mass of a frame's beam over the mass of all columns."""
     offset: arguments.Finite | None = None
+    """Distance [m] of a block's mass to the right of the middle."""
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system that the options mean; of --friction only what slides knows."""
