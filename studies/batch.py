@@ -128,7 +128,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw the error against the rate."""
-    from studies.drawing.batch import draw_batch
+    from studies.drawing.precision import draw_batch
 
     return {"batch": draw_batch(tables["batch"])}
 
