@@ -24,12 +24,11 @@ from analytic.response import Outcome
 from analytic.simulate import simulate
 from analytic.slide import SlidingBlock
 from studies.blocks.cabinets import Cabinet, Unit, read_cabinets
-from studies.cases.accelerograms import Baseline, baseline_note, read_record
 from studies.kit import arguments
 from studies.kit.arguments import Running
 from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
 from studies.kit.say import capital, out_of
-from studies.kit.scene_options import window_of
+from studies.kit.scene_options import Baseline, baseline_note, read_record, window_of
 from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.presets import is_engine
 

@@ -145,12 +145,8 @@ def _check_engines(_: type, names: Sequence[str] | None) -> None:
 Sources = Annotated[tuple[str, ...], sources_option()]
 Engines = Annotated[
     tuple[str, ...],
-    Parameter(
-        consume_multiple=True,
-        show_default=_spaced,
-        validator=_check_engines,
-        help="Names of engines, without a preset.",
-    ),
+    several,
+    Parameter(validator=_check_engines, help="Names of engines, without a preset."),
 ]
 
 

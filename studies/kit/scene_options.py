@@ -1,10 +1,12 @@
 """Options of a scene: what stands on the base, how that moves, and from which start."""
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
+import numpy as np
 from cyclopts import Parameter
 
 from analytic.accelerograms import Units
@@ -16,7 +18,6 @@ from analytic.record import Record
 from analytic.slide import SlidingBlock
 from analytic.start import LEAST_TILT, check_vertical, strongest
 from engines.scene import System, free_rocking_window
-from studies.cases.accelerograms import Baseline, read_record
 from studies.cases.paper import PULSES
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments
@@ -25,6 +26,8 @@ MOST_TIME, MOST_STEPS = 1e6, 1e9
 """How long a block is watched at most, in units of 1/p, and in how many steps."""
 
 Pulse = Literal["half-sine", "full-sine"]
+Baseline = Literal["none", "constant", "linear"]
+"""How a record is corrected: not at all, or by what its samples lose."""
 
 
 @Parameter(name="*")
@@ -254,3 +257,42 @@ def window_of(
                 f"{watched_s:.4g} s, so that this takes at most {MOST_STEPS:g} steps"
             )
     return watched_s
+
+
+def read_record(
+    path: Path,
+    units: str | None = None,
+    baseline: Baseline | None = None,
+    dt: float | None = None,
+    *,
+    insist: bool = True,
+    option: str = "--record",
+) -> Record:
+    """Read a recorded ground acceleration [m/s2], as `Record.read` does, and correct it."""
+    try:
+        record = Record.read(path, units, dt, insist=insist)
+    except ValueError as error:
+        problem = re.sub(r"; units(?= must)", "; --units", str(error).removeprefix("path"))
+        problem = re.sub(r"; dt(?=,| must not)", "; --record-dt", problem)
+        raise BadInputError(f"{option}{problem}") from error
+    try:
+        if baseline == "constant" or baseline == "linear":
+            record = record.detrended(baseline)
+    except ValueError as error:
+        raise BadInputError(f"{option} is {str(path)!r}; {error}") from error
+    if record.peak == 0.0:
+        raise BadInputError(f"{option} is {str(path)!r}; it is zero throughout, and must not be")
+    return record
+
+
+def baseline_note(record: Record, baseline: str | None) -> str:
+    """Say how a record was corrected, and what velocity it leaves the base with, if any."""
+    words = [] if baseline in (None, "none") else [f"baseline corrected by detrend, {baseline}"]
+    largest = float(np.abs(record.velocity(record.breakpoints)).max())
+    if abs(record.final_velocity) > 1e-6 * largest:  # less is rounding
+        part = abs(record.final_velocity) / largest
+        words.append(
+            f"the record's velocity ends at {record.final_velocity:.3g} m/s, {part:.2g} of its "
+            "largest, and the base keeps it" + ("" if words else "; --baseline corrects it")
+        )
+    return "; ".join(words)
