@@ -7,11 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import product
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
-from cyclopts import Parameter
 
 from engines.world import FloatArray
 from studies.cases.refusal import BadInputError
@@ -32,14 +31,12 @@ RUNS = 20
 SAME = ["backend", "device", "preset", "dt_ms", "worlds", "runs"]
 
 
-DEVICE = Parameter(help="cpu or cuda, where MuJoCo Warp runs; by default it is left out.")
-
-
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Where MuJoCo Warp runs."""
 
-    device: Annotated[Literal["cpu", "cuda"] | None, DEVICE] = None
+    device: Literal["cpu", "cuda"] | None = None
+    """cpu or cuda, where MuJoCo Warp runs; by default it is left out."""
 
 
 def jobs(_: Sequence[str], quick: bool, options: Options) -> list[Job]:
@@ -131,7 +128,7 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw the error against the rate."""
-    from studies.drawing.batch import draw_batch
+    from studies.drawing.precision import draw_batch
 
     return {"batch": draw_batch(tables["batch"])}
 

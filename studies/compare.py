@@ -18,14 +18,13 @@ from analytic.response import Outcome, Response
 from analytic.slide import SlidingBlock
 from analytic.start import strongest
 from engines.scene import System
-from studies.cases.accelerograms import baseline_note
 from studies.cases.paper import PULSES
 from studies.kit import arguments
 from studies.kit.arguments import Computing, EffortOptions, Yours
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.run import Place, exit_code, here, place_of, run, with_response
 from studies.kit.say import aligned, duration, number
-from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
+from studies.kit.scene_options import Excitation, Height, Standing, Width, baseline_note, window_of
 from studies.measures.differences import conditioning_of_one
 from studies.measures.halving import ELSEWHERE, estimate_of, halved, published_trust
 from studies.sources.registry import core_sources
@@ -78,8 +77,6 @@ def command(
     """
     if standing.scene == "slide":
         arguments.refuse_given({"plot": plot}, "only where something rocks")
-        if sources == DEFAULT_SOURCES:  # a block that slides has no linearization
-            sources = ("exact", *core_sources())
     arguments.refuse_both(dt=yours.dt, p_dt=effort.p_dt)
     effort.refuse_idle(sources)
     words = "a block requires its full width and height [m]"
@@ -88,7 +85,8 @@ def command(
         arguments.check_file("--plot", plot, ".png", ".pdf", ".svg")
     system = standing.system(width, height, yours.friction)
     motion, start = excitation.pose(system)
-    if isinstance(motion, BothWays) and sources == DEFAULT_SOURCES:
+    nonlinear = standing.scene == "slide" or isinstance(motion, BothWays)
+    if nonlinear and sources == DEFAULT_SOURCES:
         sources = ("exact", *core_sources())
     window = window_of(system, motion, duration, p_dt=effort.p_dt, dt=yours.dt)
     times = np.linspace(0.0, window, 1501) if plot else None
@@ -147,11 +145,7 @@ def table_text(case: Question, records: Sequence[Row], note: str = "") -> str:
             *[f"exact   {', '.join(facts)}"] * (not isinstance(system, SlidingBlock)),
             "",
             _table(records, system),
-            *(
-                f"{record['source']}: {record['message']}"
-                for record in records
-                if record["message"]
-            ),
+            *(f"{each['source']}: {each['message']}" for each in records if each["message"]),
         ]
     )
 

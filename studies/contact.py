@@ -211,15 +211,10 @@ def tabulate(rows: pd.DataFrame) -> Tables:
 
 
 def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return one line for each variant: its errors, what it changes, its impact, its cost."""
+    """Return one line for each variant: its errors, its impact, its cost."""
     compared = with_reference(rows)
-    case = ["engine", "preset", "set", *(["case"] if "load" in rows else ["figure", "aspect"])]
-    base = compared[compared["factor"] == ""].set_index(case)["peak_ratio"]
-    base = base.where(np.isfinite(base))  # a preset that overturns has no peak to move
-    own = base.reindex(pd.MultiIndex.from_frame(compared[case])).to_numpy()
     kinds = wrong_in(compared)
     compared = compared.assign(
-        moved=(compared["peak_ratio"] / own - 1.0).where(compared["error"].notna()).abs(),
         typical=compared["error"].abs().where(compared["set"] == "typical"),
         step_s=compared["wall_s"] / compared["steps"].clip(lower=1),
         failed=kinds == NO_ANSWER,
@@ -233,7 +228,6 @@ def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
         wrong=("wrong", "sum"),
         median_error=("typical", "median"),
         max_error=("typical", "max"),
-        moved=("moved", "max"),
         ratio_over_eta=("ratio_over_eta", "median"),
         newton_e=("newton_e", "median"),
         slip_widths=("slip_widths", "max"),
@@ -242,11 +236,8 @@ def variant_table(rows: pd.DataFrame) -> pd.DataFrame:
         step_s=("step_s", "median"),
         message=("message", "max"),
     ).reset_index()
-    first = table.groupby(["engine", "preset"])[["ratio_over_eta", "wrong"]].transform("first")
-    return table.assign(
-        ratio_moved=(table["ratio_over_eta"] / first["ratio_over_eta"] - 1.0).abs(),
-        worse=(table["failed"] > 0) | (table["wrong"] > first["wrong"]),
-    )
+    first = table.groupby(["engine", "preset"])["wrong"].transform("first")
+    return table.assign(worse=(table["failed"] > 0) | (table["wrong"] > first))
 
 
 def left_at_default(lines: pd.DataFrame) -> pd.DataFrame:

@@ -33,9 +33,7 @@ from studies.measures.presets import engine_of, preset_of
 from studies.measures.published import PUBLISHED
 from studies.sources.registry import announce, presets_of, resolve
 
-MODEL, SWEEP, STEPS, EXTREMES = (
-    f"score-{name}" for name in ("model", "sweep", "steps", "extremes")
-)
+MODEL, SWEEP, STEPS, EXTREMES = "score-model", "score-sweep", "score-steps", "score-extremes"
 WRONG = "wrong"
 FURTHER = {"score-frame": "frame", "score-slide": "slide"}
 """Table -> its scene."""

@@ -1,4 +1,6 @@
-"""Error against run time: a band for each kind of preset, a line for each engine."""
+"""Error against run time of a case, and against cases a second of batches."""
+
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -7,9 +9,10 @@ from matplotlib.figure import Figure
 
 from engines import ENGINES
 from engines.factors import BEST, DEFAULT
-from studies.drawing.facets import error_scale, sheet
+from studies.drawing.facets import dot, error_scale, key, preset_dots, sheet
 from studies.drawing.styles import LOWEST, style_of, title_of
 from studies.kit.say import capital, duration
+from studies.measures.batches import NAMES, WARP, C
 from studies.measures.costs import EXACT, exact_cost, joint, parts_of
 from studies.measures.presets import look_of
 
@@ -18,6 +21,8 @@ WRONG = 10.0
 GAP = 0.07
 """Least distance between two names, over the height of a panel."""
 LANDING = "landing"
+MARKERS = {C: "o", WARP: "s"}
+"""Way to step a batch -> its marker."""
 
 
 def band_of(method: str) -> str | None:
@@ -98,3 +103,31 @@ def _name(axes: Axes, method: str, line: pd.DataFrame, place: float, colour: str
     end = line["wall_s"].iloc[-1], line["error"].iloc[-1]
     axes.annotate(words, end, (1.06, place), textcoords="axes fraction", va="center", fontsize=9,
                   color=colour, arrowprops=leader)  # fmt: skip
+
+
+def draw_batch(lines: pd.DataFrame) -> Figure:
+    """Draw a line for each preset and way to step, over its steps, and name other sizes."""
+    figure, (axes,) = sheet((9.0, 5.6))
+    axes.set(xscale="log", yscale="log", xlabel="cases a second", ylim=(1e-5, 1.0))
+    axes.set_ylabel("median relative error of the peak")
+    stepped = lines["backend"].isin(MARKERS)
+    usable = lines[stepped & lines["median_error"].notna()]
+    for (backend, preset), mine in usable.groupby(["backend", "preset"], sort=False):
+        colour, marker = look_of(str(preset)).colour, MARKERS[str(backend)]
+        look: dict[str, Any] = {"color": colour, "marker": marker}
+        along = mine[mine["worlds"] == mine["worlds"].mode().max()].sort_values("dt_ms")
+        axes.plot(along["cases_per_s"], along["median_error"], **look)
+        for line in mine.drop(along.index).query("runs == 1").to_dict("records"):
+            place = line["cases_per_s"], line["median_error"]
+            axes.plot(*place, fillstyle="none", **look)
+            axes.annotate(
+                f"{line['worlds']}", place, (0, 7), textcoords="offset points", ha="center"
+            )
+    for line in lines[~stepped].to_dict("records"):
+        axes.axvline(line["cases_per_s"], color="black", linewidth=2.0)
+        axes.annotate("exact solution ", (line["cases_per_s"], 1.3e-5), ha="right")
+    error_scale(axes.yaxis, 1e-5, 1.0, 1)
+    axes.grid(alpha=0.25)
+    ways = [dot(NAMES[name], MARKERS[name]) for name in usable["backend"].unique()]
+    key(figure, [*ways, *preset_dots(usable["preset"].unique())])
+    return figure

@@ -145,12 +145,8 @@ def _check_engines(_: type, names: Sequence[str] | None) -> None:
 Sources = Annotated[tuple[str, ...], sources_option()]
 Engines = Annotated[
     tuple[str, ...],
-    Parameter(
-        consume_multiple=True,
-        show_default=_spaced,
-        validator=_check_engines,
-        help="Names of engines, without a preset.",
-    ),
+    several,
+    Parameter(validator=_check_engines, help="Names of engines, without a preset."),
 ]
 
 
@@ -218,31 +214,18 @@ def check_file(argument: str, path: Path, *ends: str) -> None:
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Computing:
-    """Where jobs run, and for how long at most.
-
-    Attributes
-    ----------
-    jobs
-        Processes that run engines; by default one per core.
-    time_limit
-        Wall-clock time [s] after which a case of an engine fails.
-    cluster
-        Address of a Dask scheduler whose workers run all cases, such as tcp://127.0.0.1:8786.
-    """
+    """Where jobs run, and for how long at most."""
 
     jobs: Count | None = None
+    """Processes that run engines; by default one per core."""
     time_limit: TimeLimit = 600.0
+    """Wall-clock time [s] after which a case of an engine fails."""
     cluster: str | None = None
+    """Address of a Dask scheduler whose workers run all cases, such as tcp://127.0.0.1:8786."""
 
     def __post_init__(self) -> None:
         if self.cluster is not None:
             refuse_given({"jobs": self.jobs}, "only without --cluster")
-
-
-ALSO = (
-    "Further folders of the same command's results, such as those of engines that are installed "
-    "elsewhere; their rows are added."
-)
 
 
 @Parameter(name="*")
@@ -250,24 +233,20 @@ ALSO = (
 class Running(Computing):
     """Where a study's jobs run, and which of its rows there are already."""
 
-    also: Annotated[tuple[Place, ...] | None, several_or_none, Parameter(help=ALSO)] = None
+    also: Annotated[tuple[Place, ...] | None, several_or_none] = None
+    """Further folders of the same command's results, such as those of engines that are installed
+    elsewhere; their rows are added."""
 
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class EffortOptions:
-    """How finely the sources step that do.
-
-    Attributes
-    ----------
-    p_dt
-        Step of solvers and engines in units of 1/p; by default their own.
-    accuracy
-        Accuracy of engines with landing steps; by default standard.
-    """
+    """How finely the sources step that do."""
 
     p_dt: Step | None = None
+    """Step of solvers and engines in units of 1/p; by default their own."""
     accuracy: Annotated[registry.Accuracy, one_of(registry.Accuracy)] | None = None
+    """Accuracy of engines with landing steps; by default standard."""
 
     def options(self, name: str) -> dict[str, Any]:
         """Return the options that this means for a source."""
@@ -296,19 +275,13 @@ def _refuse_idle(sources: Sequence[str], taking: str, words: str, **given: Any) 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Yours:
-    """What a reader's own simulation has.
-
-    Attributes
-    ----------
-    friction
-        Coefficient of friction between block and base in engines; by default the preset's. Models
-        do not slide: if the exact solution needs more friction, its row says so.
-    dt
-        Step [s] of solvers, and of engines whose preset takes equal steps.
-    """
+    """What a reader's own simulation has."""
 
     friction: NotNegative | None = None
+    """Coefficient of friction between block and base in engines; by default the preset's. Models do
+    not slide: if the exact solution needs more friction, its row says so."""
     dt: Positive | None = None
+    """Step [s] of solvers, and of engines whose preset takes equal steps."""
 
     def options(self, sources: Sequence[str], system: System) -> dict[str, dict[str, float]]:
         """Return the options that this means for each source: friction, and step, p dt."""

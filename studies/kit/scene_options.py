@@ -1,10 +1,12 @@
 """Options of a scene: what stands on the base, how that moves, and from which start."""
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
+import numpy as np
 from cyclopts import Parameter
 
 from analytic.accelerograms import Units
@@ -16,7 +18,6 @@ from analytic.record import Record
 from analytic.slide import SlidingBlock
 from analytic.start import LEAST_TILT, check_vertical, strongest
 from engines.scene import System, free_rocking_window
-from studies.cases.accelerograms import Baseline, read_record
 from studies.cases.paper import PULSES
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments
@@ -25,76 +26,57 @@ MOST_TIME, MOST_STEPS = 1e6, 1e9
 """How long a block is watched at most, in units of 1/p, and in how many steps."""
 
 Pulse = Literal["half-sine", "full-sine"]
+Baseline = Literal["none", "constant", "linear"]
+"""How a record is corrected: not at all, or by what its samples lose."""
 
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Excitation:
-    """What happens to a block: a pulse or a record, or a release on ground that does not move.
-
-    Attributes
-    ----------
-    amplitude
-        Amplitude of the ground acceleration [g = 9.81 m/s²]; it must be positive, since a mirrored
-        pulse mirrors the response.
-    omega
-        Circular frequency of the pulse [rad/s].
-    pulse
-        half-sine or full-sine; full-sine unless --half-cycles is given.
-    half_cycles
-        Number of half cycles, instead of --pulse.
-    phase
-        Phase [rad] at the start of the pulse; 1.5708 makes it a cosine.
-    record
-        A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, a
-        table of time [s] and acceleration, or one column of acceleration.
-    record_dt
-        Time [s] between samples, for a file of one column.
-    units
-        Unit of the record's acceleration, for a file that does not state it; one that contradicts
-        the file is refused. g is 9.81 m/s².
-    scale
-        Factor on the record's acceleration.
-    pga
-        Scale the record to this largest absolute acceleration [g].
-    baseline
-        Before scaling, subtract the record's mean (constant) or best-fitting line (linear) with
-        scipy.signal.detrend. By default nothing is subtracted, and the velocity of the base at the
-        end is reported.
-    vertical
-        A recorded acceleration of the base upwards, in a file as of --record; --scale and --pga
-        leave it alone. The exact model and engines take it, but presets that land do not.
-    vertical_amplitude
-        Amplitude of a pulse of the base upwards [g], instead of --vertical; it may be negative.
-    vertical_omega
-        Circular frequency of that pulse [rad/s].
-    vertical_half_cycles
-        Its number of half cycles, 2 by default.
-    tilt
-        Initial rotation in units of α; a block with a positive one leans to the right. Without a
-        pulse or record the block is released on ground at rest.
-    rate
-        Initial angular velocity in units of αp; for an upright block its sign selects the corner
-        about which it turns.
-    """
+    """What happens to a block: a pulse or a record, or a release on ground that does not move."""
 
     amplitude: arguments.Positive | None = None
+    """Amplitude of the ground acceleration [g = 9.81 m/s²]; it must be positive, since a mirrored
+    pulse mirrors the response."""
     omega: arguments.Positive | None = None
+    """Circular frequency of the pulse [rad/s]."""
     pulse: Annotated[Pulse, arguments.one_of(Pulse)] | None = None
+    """half-sine or full-sine; full-sine unless --half-cycles is given."""
     half_cycles: arguments.HalfCycles | None = None
+    """Number of half cycles, instead of --pulse."""
     phase: arguments.Finite | None = None
+    """Phase [rad] at the start of the pulse; 1.5708 makes it a cosine."""
     record: arguments.Place | None = None
+    """A recorded accelerogram instead of a pulse: a PEER AT2 file, an ASC file of ESM or ITACA, a
+    table of time [s] and acceleration, or one column of acceleration."""
     record_dt: arguments.Positive | None = None
+    """Time [s] between samples, for a file of one column."""
     units: Annotated[Units, arguments.one_of(Units)] | None = None
+    """Unit of the record's acceleration, for a file that does not state it; one that contradicts
+    the file is refused. g is 9.81 m/s²."""
     scale: arguments.Positive | None = None
+    """Factor on the record's acceleration."""
     pga: arguments.Positive | None = None
+    """Scale the record to this largest absolute acceleration [g]."""
     baseline: Annotated[Baseline, arguments.one_of(Baseline)] | None = None
+    """Before scaling, subtract the record's mean (constant) or best-fitting line (linear) with
+    scipy.signal.detrend. By default nothing is subtracted, and the velocity of the base at the end
+    is reported."""
     vertical: arguments.Place | None = None
+    """A recorded acceleration of the base upwards, in a file as of --record; --scale and --pga
+    leave it alone. The exact model and engines take it, but presets that land do not."""
     vertical_amplitude: arguments.Finite | None = None
+    """Amplitude of a pulse of the base upwards [g], instead of --vertical; it may be negative."""
     vertical_omega: arguments.Positive | None = None
+    """Circular frequency of that pulse [rad/s]."""
     vertical_half_cycles: arguments.HalfCycles | None = None
+    """Its number of half cycles, 2 by default."""
     tilt: arguments.Finite | None = None
+    """Initial rotation in units of α; a block with a positive one leans to the right. Without a
+    pulse or record the block is released on ground at rest."""
     rate: arguments.Finite | None = None
+    """Initial angular velocity in units of αp; for an upright block its sign selects the corner
+    about which it turns."""
 
     def pose(self, block: System) -> tuple[Motion, tuple[float, float]]:
         """Return the motion that the options mean, and θ [rad] and its rate [rad/s] at t = 0."""
@@ -209,25 +191,17 @@ def block_of(width: float, height: float) -> RigidBlock:
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Standing:
-    """What stands on the base.
-
-    Attributes
-    ----------
-    scene
-        block: one block that rocks. frame: a beam on columns that rock, of --width and --height
-        each, with --load. slide: one block that slides, by a --friction below B/H.
-    columns
-        Number of columns of a frame, from 2 to 100.
-    load
-        Mass of a frame's beam over the mass of all columns.
-    offset
-        Distance [m] of a block's mass to the right of the middle.
-    """
+    """What stands on the base."""
 
     scene: Annotated[SceneName, arguments.one_of(SceneName)] = "block"
+    """block: one block that rocks. frame: a beam on columns that rock, of --width and --height
+    each, with --load. slide: one block that slides, by a --friction below B/H."""
     columns: arguments.Count | None = None
+    """Number of columns of a frame, from 2 to 100."""
     load: arguments.Positive | None = None
+    """Mass of a frame's beam over the mass of all columns."""
     offset: arguments.Finite | None = None
+    """Distance [m] of a block's mass to the right of the middle."""
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system that the options mean; of --friction only what slides knows."""
@@ -283,3 +257,42 @@ def window_of(
                 f"{watched_s:.4g} s, so that this takes at most {MOST_STEPS:g} steps"
             )
     return watched_s
+
+
+def read_record(
+    path: Path,
+    units: str | None = None,
+    baseline: Baseline | None = None,
+    dt: float | None = None,
+    *,
+    insist: bool = True,
+    option: str = "--record",
+) -> Record:
+    """Read a recorded ground acceleration [m/s2], as `Record.read` does, and correct it."""
+    try:
+        record = Record.read(path, units, dt, insist=insist)
+    except ValueError as error:
+        problem = re.sub(r"; units(?= must)", "; --units", str(error).removeprefix("path"))
+        problem = re.sub(r"; dt(?=,| must not)", "; --record-dt", problem)
+        raise BadInputError(f"{option}{problem}") from error
+    try:
+        if baseline == "constant" or baseline == "linear":
+            record = record.detrended(baseline)
+    except ValueError as error:
+        raise BadInputError(f"{option} is {str(path)!r}; {error}") from error
+    if record.peak == 0.0:
+        raise BadInputError(f"{option} is {str(path)!r}; it is zero throughout, and must not be")
+    return record
+
+
+def baseline_note(record: Record, baseline: str | None) -> str:
+    """Say how a record was corrected, and what velocity it leaves the base with, if any."""
+    words = [] if baseline in (None, "none") else [f"baseline corrected by detrend, {baseline}"]
+    largest = float(np.abs(record.velocity(record.breakpoints)).max())
+    if abs(record.final_velocity) > 1e-6 * largest:  # less is rounding
+        part = abs(record.final_velocity) / largest
+        words.append(
+            f"the record's velocity ends at {record.final_velocity:.3g} m/s, {part:.2g} of its "
+            "largest, and the base keeps it" + ("" if words else "; --baseline corrects it")
+        )
+    return "; ".join(words)

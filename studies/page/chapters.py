@@ -15,16 +15,16 @@ from studies.kit.study import Study, Tables
 
 @dataclass(frozen=True)
 class Part:
-    """A folder of results, and the command that fills it, with its further arguments."""
+    """A folder of results, and the command that fills it, with its further options."""
 
     folder: str
     name: str
     title: str = ""
-    always: tuple[str, ...] = ()
-    quick: tuple[str, ...] = ("--quick",)
-    full: tuple[str, ...] = ()
+    always: str = ""
+    quick: str = "--quick"
+    full: str = ""
     weaker: str = ""
-    needs: tuple[str, ...] = ()
+    needs: str = ""
 
     @cached_property
     def study(self) -> Study:
@@ -34,8 +34,8 @@ class Part:
 
     def words(self, out: Path | str, full: bool) -> list[str]:
         """Return the command line after `rocking`."""
-        chosen = self.full if full else self.quick
-        return [self.name, "--out", str(out), *self.needs, *self.always, *chosen]
+        options = f"{self.needs} {self.always} {self.full if full else self.quick}"
+        return [self.name, "--out", str(out), *options.split()]
 
     def command(self, full: bool) -> str:
         """Return the whole command line."""
@@ -44,8 +44,7 @@ class Part:
     @property
     def published_command(self) -> str:
         """The whole command line that makes what is published, with every engine."""
-        words = PUBLISHED_WITH.get(self.folder, " ".join(self.full))
-        return replace(self, full=tuple(words.split())).command(full=True)
+        return replace(self, full=PUBLISHED_WITH.get(self.folder, self.full)).command(full=True)
 
     def found(self, tables: Tables, full: bool) -> dict[str, Any]:
         """Return what every page says of its tables."""
@@ -86,31 +85,29 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
     "The paper's cases": (
         Part(
             *("sweep", "sweep"),
-            quick=("--accuracy", "loose"),
+            quick="--accuracy loose",
             weaker="Engines run at accuracy loose instead of standard.",
         ),
         Part(
             *("presets", "sweep"),
             "How well do engines predict them with default and with tuned settings?",
-            quick=("--figure", "8", "--sources", "exact", "core:default"),
-            full=(
-                *("--sources", "exact", "engines:default", "engines:default-at-rest"),
-                *("engines:recommended", "engines:tuned", "engines"),
-            ),
+            quick="--figure 8 --sources exact core:default",
+            full="--sources exact engines:default engines:default-at-rest engines:recommended "
+            "engines:tuned engines",
             weaker="Only figure 8 of four, and no tuned preset.",
         ),
     ),
     "The paper's histories and linearizations": (
-        Part("histories", "histories", quick=()),
-        Part("linearizations", "linearizations", quick=()),
+        Part("histories", "histories", quick=""),
+        Part("linearizations", "linearizations", quick=""),
     ),
     "Random cases": (
         Part("validate", "validate"),
         Part(
             *("estimate", "validate", "How large is an error without an exact solution?"),
-            always=("--halves",),
-            quick=("--quick", "--sources", "core", "core:tuned", "core:default"),
-            full=("--sources", "core", "core:tuned", "core:default"),
+            always="--halves",
+            quick="--quick --sources core core:tuned core:default",
+            full="--sources core core:tuned core:default",
             weaker="Too few random cases to bound any factor.",
         ),
     ),
@@ -119,9 +116,9 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part("batch", "batch", weaker="64 cases of 960; no GPU."),
     ),
     "Contact models": (
-        Part("advice", "advise", quick=("--quick", "--engines", "pybullet", "mujoco")),
+        Part("advice", "advise", quick="--quick --engines pybullet mujoco"),
         Part("contact", "contact"),
-        Part("restitution", "restitution", quick=()),
+        Part("restitution", "restitution", quick=""),
     ),
     "Stiff and extreme cases": (Part("stability", "stability"),),
     "Overturning": (
@@ -129,8 +126,8 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part(
             *("defaults", "overturning"),
             "Where do engines fail with default settings?",
-            full=("--sources", "engines:default"),
-            quick=("--quick", "--sources", "core:default"),
+            full="--sources engines:default",
+            quick="--quick --sources core:default",
         ),
     ),
     "Other scenes": (Part("scenes", "scenes"),),
@@ -138,14 +135,14 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part(
             *("rocks", "experiments"),
             "Which rocks fall on a shake table, and who predicts it?",
-            quick=(),
-            needs=("--rocks", "FOLDER"),
+            quick="",
+            needs="--rocks FOLDER",
         ),
         Part(
             *("cubes", "experiments"),
             "Which engine predicts where a tossed cube goes?",
-            quick=(),
-            needs=("--cubes", "FOLDER"),
+            quick="",
+            needs="--cubes FOLDER",
         ),
     ),
 }

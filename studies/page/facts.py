@@ -15,9 +15,7 @@ from engines.declaration import AT_REST, Help, Stepping
 from engines.factors import BEST, DEFAULT, LEFT_OUT
 from engines.registry import OWN
 from engines.run.export import broken
-from studies.advise import IN_WORDS, cheapest, pairs
-from studies.advise import by_kind as advised_by_kind
-from studies.advise import unadvised as not_advised
+from studies import advise
 from studies.kit.identity import NOT_INSTALLED
 from studies.kit.say import capital, duration, listed, number, part, signed
 from studies.kit.store import engines_of, provenance_of
@@ -106,8 +104,8 @@ def _cell(head: str, value: Any) -> str:
 
 def advised(published: Path) -> list[list[str]]:
     """Return the cheapest published setting for each error, a row for each error."""
-    rows = []
-    for target, group in cheapest(published, [*TITLES], TARGETS).groupby("target", sort=False):
+    rows, lines = [], advise.cheapest(published, [*TITLES], TARGETS)
+    for target, group in lines.groupby("target", sort=False):
         line = group.nsmallest(1, "wall_s").iloc[0]
         fixed = ENGINES[line["engine"]].preset(line["preset"]).stepping is Stepping.FIXED
         how = f"{'p dt =' if fixed else 'accuracy'} {line['value']}"
@@ -121,7 +119,7 @@ def pasted(published: Path) -> list[dict[str, Any]]:
     """Return what pasted lines are worth, for each engine and step, and the lines."""
     known = table_in(published / "advice", "lines", "literal")
     found: list[dict[str, Any]] = []
-    for engine, dt_s, *both in pairs(table_in(published / "advice", "advice")):
+    for engine, dt_s, *both in advise.pairs(table_in(published / "advice", "advice")):
         mine = known[(known["engine"] == engine) & (known["dt_s"] == dt_s)]
         place, title = f"{engine}-{1e6 * dt_s:.0f}", f"{TITLES[engine]}, {duration(dt_s)}"
         cells = [
@@ -143,19 +141,19 @@ def pasted(published: Path) -> list[dict[str, Any]]:
 
 def by_kind(published: Path) -> list[list[str]]:
     """Return outcomes and typical errors before and after, by what moves a box."""
-    lines = advised_by_kind(table_in(published / "advice", "kinds"))
+    lines = advise.by_kind(table_in(published / "advice", "kinds"))
     cells = []
     for kind, both in lines.groupby("kind", sort=False):
         wrong, cases = both["wrong"].map(str), both["cases"].max()
         errors = (both[name].map(part) for name in ("median_error", "max_error"))
-        shown = (wrong, *errors)
-        cells.append([IN_WORDS[str(kind)], str(cases), *map(" → ".join, shown)])
+        shown = map(" → ".join, (wrong, *errors))
+        cells.append([advise.IN_WORDS[str(kind)], str(cases), *shown])
     return cells
 
 
 def unadvised(published: Path) -> dict[str, str]:
     """Return why pasted lines are not advised, of each engine where they are not."""
-    bad = not_advised(table_in(published / "advice", "advice"))
+    bad = advise.unadvised(table_in(published / "advice", "advice"))
     return {TITLES[engine]: why for engine, why in bad.items()}
 
 

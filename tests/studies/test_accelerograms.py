@@ -14,8 +14,8 @@ from scipy.signal import detrend
 from analytic import GRAVITY, Record, RigidBlock, simulate
 from analytic.accelerograms import BYTES, MOST_SAMPLES, UNITS
 from studies.__main__ import run
-from studies.cases.accelerograms import read_record
 from studies.cases.refusal import BadInputError
+from studies.kit.scene_options import read_record
 
 ASKED = [*BLOCK, "--sources", "exact", "housner", "--record"]
 
