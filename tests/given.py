@@ -6,6 +6,7 @@ from dataclasses import asdict
 import numpy as np
 
 from analytic import Record, RigidBlock, SinePulse
+from engines.world import Moment
 
 BLOCK = RigidBlock(width=0.5, height=1.5)
 G = BLOCK.gravity
@@ -39,6 +40,21 @@ def noise(seed, count, dt, peak, width=0.12):
     kernel = np.exp(-0.5 * (np.arange(-3 * width, 3 * width, dt) / width) ** 2)
     shaken = np.convolve(draw, kernel, mode="same") * np.sin(np.linspace(0, math.pi, count))
     return Record(dt=dt, samples=shaken).scaled_to(peak)
+
+
+class Bare:
+    """What every world must answer, and nothing more."""
+
+    moment = Moment.END
+
+    def step(self, step):
+        pass
+
+    def fault(self):
+        return ""
+
+    def close(self):
+        pass
 
 
 def all_but_times(response):

@@ -1,12 +1,11 @@
-"""A second, slow route to every response: SciPy's DOP853 with its own event location.
+"""A second, slow route to a block's response: SciPy's DOP853 with its own event location.
 
-A block's is from the equations as the paper prints them (corrected), the free rocking integrated,
-not decided by energy; that of several bodies is by Newton and Euler, contacts being constraints.
+It is from the equations as the paper prints them (corrected), the free rocking integrated, not
+decided by energy.
 """
 
 import itertools
 import math
-from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -133,73 +132,3 @@ def history_under_samples(model, block, dt, samples, times):
             elif path.t_events[2].size:
                 break
     return rotations, impacts[:MOST_IMPACTS]
-
-
-class Struck(NamedTuple):
-    """An impact of bodies: its time, their velocities, and impulses (x, z) by contact."""
-
-    time: float
-    before: np.ndarray
-    after: np.ndarray
-    impulses: np.ndarray
-
-
-class Bodies:
-    """Planar bodies with coordinates q (x, z, angle clockwise each) and velocities v.
-
-    A scene has `masses`, `loads` by q and time, and by q and a side `contacts`: their Jacobian, two
-    rows each, and what is left of an acceleration times v**2. The first body's angle says the side.
-    """
-
-    def held(self, q, *points):
-        """Return both for points (first coordinate of a body, place on it, sign), which add up."""
-        jacobian, bent = np.zeros((2, 2, len(q)))
-        for first, (u, w), sign in points:
-            c, s = math.cos(q[first + 2]), math.sin(q[first + 2])
-            arm = np.array([c * u + s * w, -s * u + c * w])
-            jacobian[:, first : first + 2] = sign * np.eye(2)
-            jacobian[:, first + 2] = sign * np.array([arm[1], -arm[0]])
-            bent[:, first + 2] = -sign * arm
-        return jacobian, bent
-
-    def accelerations(self, q, v, side, time):
-        """Return the accelerations, and the forces (x, z) by contact."""
-        (jacobian, bent), mass = self.contacts(q, side), self.masses
-        whole = np.block([[np.diag(mass), -jacobian.T], [jacobian, np.zeros((len(bent),) * 2)]])
-        known = np.concatenate((self.loads(q, time), -bent @ v**2))
-        found = np.linalg.lstsq(whole, known, rcond=1e-12)[0]
-        return found[: mass.size], found[mass.size :].reshape(-1, 2)
-
-    def struck(self, q, v, side):
-        """Return the velocities and impulses of an ideally inelastic impact of a side."""
-        jacobian, _ = self.contacts(q, side)
-        by_mass = jacobian / self.masses
-        impulse = np.linalg.lstsq(by_mass @ jacobian.T, -jacobian @ v, rcond=1e-12)[0]
-        return v + by_mass.T @ impulse, impulse.reshape(-1, 2)
-
-    def follow(self, q, v, side, t, ends, **options):
-        """Yield SciPy's path of each swing, its side, and its impact, None at one of `ends`."""
-        size = len(q)
-
-        def flow(t, state, side):
-            q, v = state[:size], state[size:]
-            return np.concatenate((v, self.accelerations(q, v, side, t)[0]))
-
-        def lands(t, state, side):
-            return side * state[2]
-
-        def turns(t, state, side):
-            return side * state[size + 2]
-
-        lands.terminal, lands.direction, turns.direction = True, -1, -1
-        while t < ends[-1]:
-            until = min(end for end in ends if end > t * (1.0 + 1e-14))
-            path = solve_ivp(
-                flow, (t, until), np.concatenate((q, v)), "DOP853",
-                events=(lands, turns), args=(side,), **options,
-            )  # fmt: skip
-            t, q, v, swings, impact = path.t[-1], *np.split(path.y[:, -1], 2), side, None
-            if path.status == 1:
-                impact = Struck(t, v, *self.struck(q, v, -side))
-                side, v = -side, impact.after
-            yield path, swings, impact

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from given import FULL_SINE as PULSE
 from given import G
-from independent import Bodies
+from scipy.integrate import solve_ivp
 
 from analytic import MODELS, Record, RigidBlock, RockingFrame, Still, conditioning, simulate
 from analytic.frame import frame_restitution
@@ -17,8 +17,11 @@ SIZES = [(0.5, 1.5), (0.5, 2.0), (1.0, 6.0)]
 SPACING, DEPTH = 3.0, 0.3
 
 
-class Frame(Bodies):
-    """N columns and a beam, which is the last body, relative to a base that may be shaken."""
+class Frame:
+    """N columns and a beam, which is the last body, relative to a base that may be shaken.
+
+    Of each body the coordinates q are x, z and the angle clockwise, and v are their velocities.
+    """
 
     def __init__(self, frame, motion=None):
         n, self.frame, self.motion = frame.columns, frame, motion or Still()
@@ -30,12 +33,22 @@ class Frame(Bodies):
         standing = [number for x in self.places for number in (x, 0.5 * frame.height, 0.0)]
         self.upright = np.array([*standing, 0.0, frame.height + 0.5 * DEPTH, 0.0])
 
-    def loads(self, q, time):
-        pulls = [-float(self.motion.acceleration(time)), -G, 0.0]
-        return self.masses * np.tile(pulls, self.frame.columns + 1)
+    def held(self, q, *points):
+        """Return both for points (first coordinate of a body, place on it, sign), which add up."""
+        jacobian, bent = np.zeros((2, 2, len(q)))
+        for first, (u, w), sign in points:
+            c, s = math.cos(q[first + 2]), math.sin(q[first + 2])
+            arm = np.array([c * u + s * w, -s * u + c * w])
+            jacobian[:, first : first + 2] = sign * np.eye(2)
+            jacobian[:, first + 2] = sign * np.array([arm[1], -arm[0]])
+            bent[:, first + 2] = -sign * arm
+        return jacobian, bent
 
     def contacts(self, q, side):
-        """Clockwise, on side +1, a column stands on its right foot; its head's rows come after."""
+        """Return their Jacobian, two rows each, and what is left of an acceleration times v**2.
+
+        Clockwise, on side +1, a column stands on its right foot; its head's rows come after.
+        """
         half, beam = side * 0.5 * self.frame.width, 3 * self.frame.columns
         foot, rows = np.array([half, -0.5 * self.frame.height]), []
         for i, place in enumerate(self.places):
@@ -44,23 +57,57 @@ class Frame(Bodies):
             rows += [self.held(q, (3 * i, -foot, 1.0), carried)]
         return map(np.concatenate, zip(*rows, strict=True))
 
+    def accelerations(self, q, v, side, time):
+        """Return the accelerations, and the forces (x, z) by contact."""
+        (jacobian, bent), mass = self.contacts(q, side), self.masses
+        whole = np.block([[np.diag(mass), -jacobian.T], [jacobian, np.zeros((len(bent),) * 2)]])
+        pulls = [-float(self.motion.acceleration(time)), -G, 0.0]
+        known = np.concatenate((mass * np.tile(pulls, self.frame.columns + 1), -bent @ v**2))
+        found = np.linalg.lstsq(whole, known, rcond=1e-12)[0]
+        return found[: mass.size], found[mass.size :].reshape(-1, 2)
+
+    def struck(self, q, v, side):
+        """Return the velocities and impulses of an ideally inelastic impact of a side."""
+        jacobian, _ = self.contacts(q, side)
+        by_mass = jacobian / self.masses
+        impulse = np.linalg.lstsq(by_mass @ jacobian.T, -jacobian @ v, rcond=1e-12)[0]
+        return v + by_mass.T @ impulse, impulse.reshape(-1, 2)
+
 
 def solve(frame, motion, end, longest=0.02):
     """Return peaks over alpha of the columns, ratios of impacts, contact forces and impulses."""
     bodies, angles = Frame(frame, motion), slice(2, 3 * frame.columns, 3)
-    lifts = math.asin(G * math.tan(frame.alpha) / motion.amplitude) / motion.omega
-    peaks, struck, forces = [], [], []
-    for path, side, impact in bodies.follow(
-        bodies.upright, 0.0 * bodies.upright, -1.0, lifts, (motion.duration, end),
-        rtol=1e-12, atol=1e-14, max_step=longest,
-    ):  # fmt: skip
+    t = math.asin(G * math.tan(frame.alpha) / motion.amplitude) / motion.omega
+    q, v, side = bodies.upright, 0.0 * bodies.upright, -1.0
+    peaks, ratios, forces, impulses = [], [], [], []
+
+    def flow(t, state, side):
+        q, v = np.split(state, 2)
+        return np.concatenate((v, bodies.accelerations(q, v, side, t)[0]))
+
+    def lands(t, state, side):
+        return side * state[2]
+
+    def turns(t, state, side):
+        return side * state[len(q) + 2]
+
+    lands.terminal, lands.direction, turns.direction = True, -1, -1
+    while t < end:
+        until = min(stop for stop in (motion.duration, end) if stop > t * (1.0 + 1e-14))
+        path = solve_ivp(
+            flow, (t, until), np.concatenate((q, v)), "DOP853", events=(lands, turns),
+            args=(side,), rtol=1e-12, atol=1e-14, max_step=longest,
+        )  # fmt: skip
         for time, state in zip(path.t, path.y.T, strict=True):
             forces.append(bodies.accelerations(*np.split(state, 2), side, time)[1])
         peaks += [state[angles] for state in path.y_events[1]]
-        struck += [impact] if impact else []
-    ratios = [impact.after[2] / impact.before[2] for impact in struck]
-    impulses = np.array([impact.impulses for impact in struck])
-    return np.abs(peaks).max(axis=0) / frame.alpha, ratios, np.array(forces), impulses
+        t, (q, v) = path.t[-1], np.split(path.y[:, -1], 2)
+        if path.status == 1:
+            after, impulse = bodies.struck(q, v, -side)
+            ratios.append(after[2] / v[2])
+            impulses.append(impulse)
+            side, v = -side, after
+    return np.abs(peaks).max(axis=0) / frame.alpha, ratios, np.array(forces), np.array(impulses)
 
 
 @pytest.mark.parametrize("columns", [2, 3])

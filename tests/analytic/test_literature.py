@@ -10,7 +10,6 @@ import pytest
 from analytic import RigidBlock, SinePulse, overturning_modes, simulate
 from analytic.block import GRAVITY
 
-HOGAN = "Hogan, 10th World Conference on Earthquake Engineering, 1992, Table 1 and the cascade"
 ZHANG = "Zhang and Makris, Rocking response of free-standing blocks under cycloidal pulses, 2001"
 ROUSSOS = "Makris and Roussos, Géotechnique 50(3), 2000, pp. 243-262"
 PEER = "PEER report 2001/07, one cosine of 2 s"
@@ -113,7 +112,7 @@ STEADY = {
     4.9: ((0.4, 0.3), (3.8, 3.8), (3.7911, 3.7911)),
     4.14: ((0.5, 0.3), (5.6, 4.0), (5.6254, 3.9649)),
 }
-"""omega/p -> the start in alpha and p alpha, and the largest rotations to either side [deg]."""
+"""omega/p -> start in alpha and p alpha, largest rotations per side [deg]; Hogan 1992, Table 1."""
 
 
 @pytest.mark.parametrize("omega_over_p", STEADY)

@@ -3,27 +3,14 @@
 import math
 from dataclasses import replace
 
+from given import Bare
+
 from analytic import simulate
 from engines import ENGINES
 from engines.declaration import Stepping
 from engines.run.run import simulate_world
 from engines.scene import ACCURACIES
 from engines.world import Moment, Pose
-
-
-class Bare:
-    """What every world must answer, and nothing more."""
-
-    moment = Moment.END
-
-    def step(self, step):
-        pass
-
-    def fault(self):
-        return ""
-
-    def close(self):
-        pass
 
 
 def standing(scene, theta, rate):

@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 from commanding import python
 from declared import run
-from known import Bare, ScriptedWorld
+from given import Bare
+from known import ScriptedWorld
 from uses import BLOCK, CORE, HERE, SHAKEN, every_use, held_frames, pulse, rocked, scene
 
 from analytic import RigidBlock, RockingFrame, SlidingBlock

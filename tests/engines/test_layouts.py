@@ -8,9 +8,9 @@ from itertools import islice
 import numpy as np
 import pytest
 from declared import NUISANCE, equal_to
-from given import BLOCK, all_but_times
+from given import BLOCK, Bare, all_but_times
 from given import FULL_SINE as SINE
-from known import Bare, ScriptedWorld, standing
+from known import ScriptedWorld, standing
 from uses import CORE, FIXED, HERE, agreed, rocked, scene
 
 from analytic import Record, RigidBlock, RockingFrame, SlidingBlock, conditioning, simulate
@@ -146,8 +146,6 @@ def test_a_launched_box_stops_and_counts_as_far_as_it_got(engine):
 
 class Swings(Bare):
     """Two columns turn by 0.2 of alpha, then 0.4, the second a part further; a beam leaves them."""
-
-    moment = Moment.END
 
     def __init__(self, posed, further, slid_m, raised_m):
         self.posed, self.time, self.off = posed, 0.0, (further, slid_m, raised_m)

@@ -1,11 +1,11 @@
 """The smallest scripts of what goes wrong: each still does in the pinned version, by itself."""
 
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from commanding import python
 from uses import HERE
 
 import engines
@@ -29,7 +29,6 @@ def test_a_script_needs_its_engine_alone(trouble):
 @pytest.mark.parametrize("trouble", ASKED, ids=lambda trouble: trouble.script)
 def test_the_trouble_is_still_there(trouble, tmp_path):
     """In a process and a folder of its own, where this project is not to be found."""
-    asked = [sys.executable, "-I", str(FOLDER / trouble.script)]
-    done = subprocess.run(asked, cwd=tmp_path, capture_output=True, text=True)
+    done = python("-I", FOLDER / trouble.script, cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "expected" in done.stdout and "found" in done.stdout

@@ -1,14 +1,11 @@
 """What an import costs: nothing is compiled, and no engine, table or plot is loaded."""
 
 import json
-import os
 import re
 import shutil
-import subprocess
-import sys
 
 import pytest
-from commanding import CASE, ROOT
+from commanding import CASE, ROOT, python
 
 from studies.__main__ import COMMANDS
 
@@ -19,7 +16,7 @@ SOON = ("cyclopts", "numpy", "numba", "pandas", "fcntl")
 
 def loaded_by(statement):
     code = f"{statement}; import sys; print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = python("-c", code, check=True)
     return set(done.stdout.split())
 
 
@@ -46,8 +43,7 @@ ANSWERING = (
 
 
 def told_by(*commands):
-    asked = [sys.executable, "-c", ANSWERING, json.dumps(commands)]
-    done = subprocess.run(asked, capture_output=True, text=True, check=True)
+    done = python("-c", ANSWERING, json.dumps(commands), check=True)
     lists = re.findall("^LOADED (.*)$", done.stdout, re.MULTILINE)
     names = (words[0] for words in commands)
     return {name: set(json.loads(text)) for name, text in zip(names, lists, strict=True)}
@@ -108,9 +104,8 @@ def test_an_adapter_that_would_see_the_answer_is_named(tmp_path):
     for name, text in {"allowed": ALLOWED, **adapters}.items():
         (tmp_path / "engines" / f"{name}.py").write_text(text)
     lint = "from importlinter.cli import lint_imports as l; raise SystemExit(l(no_cache=True))"
-    known = {**os.environ, "PYTHONPATH": str(tmp_path), "COLUMNS": "200"}
-    asked = [sys.executable, "-c", lint]
-    done = subprocess.run(asked, cwd=tmp_path, env=known, capture_output=True, text=True)
+    known = {"PYTHONPATH": str(tmp_path), "COLUMNS": "200"}
+    done = python("-c", lint, cwd=tmp_path, env=known)
     assert done.returncode == 1, done.stderr
     named = re.findall(r"(engines\.forbidden_\S+) -> (analytic\S*) \(l", done.stdout)
     expected = [(f"engines.forbidden_{n}", module) for n, module in enumerate(ANSWERS)]

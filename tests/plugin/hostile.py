@@ -11,33 +11,24 @@ import time
 from pathlib import Path
 
 import numpy as np
+from given import Bare
 
 from engines.declaration import Stepping
-from engines.world import Moment
 
 NOTE = "HOSTILE_NOTE"
 """Environment variable: a file in which worlds write down the processes that they have started."""
 
 
-class Calm:
+class Calm(Bare):
     """A block that never moves."""
 
-    moment, stepping = Moment.END, Stepping.LANDING
+    stepping = Stepping.LANDING
 
     def __init__(self, scene, settings, dt_s):
         self.at = scene.bodies[0].at
 
-    def step(self, step):
-        pass
-
     def state(self):
         return [(self.at.x, self.at.z, 0.0, 0.0)]
-
-    def fault(self):
-        return ""
-
-    def close(self):
-        pass
 
 
 class Own(BaseException):

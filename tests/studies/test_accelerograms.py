@@ -351,9 +351,8 @@ def test_a_file_that_is_too_long_is_refused_at_once(content, words, tmp_path, ca
 
 
 @pytest.mark.parametrize("form", ["no count", "table"])
-def test_samples_are_counted_where_no_header_says_how_many(form, tmp_path, capsys, monkeypatch):
+def test_samples_are_counted_where_no_header_says_how_many(form, written, capsys, monkeypatch):
     monkeypatch.setattr("analytic.accelerograms.MOST_SAMPLES", 6)
     rows = "".join(f"{0.1 * at:.1f} 0.1\n" for at in range(7))
-    path = tmp_path / "long.txt"
-    path.write_text({**AT2, "table": rows}[form])
+    path = written({**AT2, "table": rows}[form])
     refused(capsys, [*IN_G, path], BEGIN, "it holds 7 samples")

@@ -14,6 +14,7 @@ from studies import respond, side_by_side
 from studies.__main__ import run
 from studies.kit.jobs import Job, Question, summary
 from studies.measures.halving import published_trust
+from studies.measures.published import PUBLISHED
 from studies.scenes import measure
 
 FIELDS = [
@@ -245,10 +246,10 @@ def test_side_by_side_refuses_what_cannot_be(options, problem):
         side_by_side(BLOCK, PULSE, **options)
 
 
-def test_the_guide_s_python_runs_as_a_script_of_one_s_own(tmp_path):
+def test_the_guide_s_python_runs_as_a_script_of_one_s_own_and_reads_a_table(tmp_path):
     """It has no guard by which other processes could be started from it."""
     guide = (ROOT / "studies/GUIDE.md").read_text()
-    code, _ = re.findall(r"^```python\n(.*?)^```$", guide, flags=re.DOTALL | re.MULTILINE)
+    code, reads = re.findall(r"^```python\n(.*?)^```$", guide, flags=re.DOTALL | re.MULTILINE)
     script = tmp_path / "mine.py"
     script.write_text(code + "print(table['peak_ratio'].tolist())\n")
     done = python(script)
@@ -257,6 +258,10 @@ def test_the_guide_s_python_runs_as_a_script_of_one_s_own(tmp_path):
     exact, engine = json.loads(line)
     assert exact == pytest.approx(simulate(BLOCK, PULSE).peak_ratio, rel=1e-12)
     assert 0.0 < engine < 1.0
+    exec(reads.replace("studies/published", PUBLISHED.as_posix()), known := {})
+    assert "studies" not in re.findall(r"(?:from|import) (\w+)", reads)
+    assert known["summary"]["cases"].max() == 960
+    assert set(known["meaning"].index) == set(known["summary"].columns)
 
 
 def test_responses_with_a_history_are_a_picture_of_as_many_lines():

@@ -1,11 +1,9 @@
 """Exported scenes: they run without this project, and find the peak that it finds."""
 
 import re
-import subprocess
-import sys
 
 import pytest
-from commanding import CASE, compared, refused, run_scripts
+from commanding import CASE, compared, python, refused, run_scripts
 from declared import run
 from given import BLOCK, PULSE
 
@@ -98,8 +96,7 @@ def test_a_script_runs_from_any_folder_and_tells_versions_and_another_peak(tmp_p
     peak = run("pymunk", asked).peak_ratio
     script = write(tmp_path / "right", "pymunk", asked, peak)
     (tmp_path / "ground.py").write_text("raise ImportError('the ground of another folder')")
-    command = [sys.executable, "-I", str(script)]  # knows no folder of the script's
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600)
+    done = python("-I", script, cwd=tmp_path)  # knows no folder of the script's
     assert done.returncode == 0, done.stdout + done.stderr
     now = version_of("pymunk")
     assert f"pymunk {now}, written with {now}" in done.stdout
@@ -119,23 +116,31 @@ def test_settings_stand_in_the_files_letter_by_letter(engine, preset):
 
 
 @pytest.mark.parametrize(
-    ("engine", "options", "expected"),
+    ("source", "options", "expected", "held"),
     [
-        ("pymunk", "", "0.3"),
-        ("pymunk", "--scene frame --load 2", "0.2056"),
-        ("pymunk", "--scene slide --friction 0.2", "-0.1258"),
-        ("pymunk:recommended", "", "0.3"),
+        ("pymunk:tuned", "--p-dt 5e-4", "0.3", ""),
+        ("pymunk:tuned", "--p-dt 5e-4 --scene frame --load 2", "0.2056", ""),
+        ("pymunk:tuned", "--p-dt 5e-4 --scene slide --friction 0.2", "-0.1258", ""),
+        ("pymunk:recommended", "--p-dt 5e-4", "0.3", ""),
+        ("mujoco:default", "--friction 0.8 --dt 0.002", "", 'DT = 0.002 |friction="0.8 '),
     ],
 )
 def test_the_command_writes_what_runs_and_does_not_write_over_it(
-    engine, options, expected, tmp_path, capsys
+    source, options, expected, held, tmp_path, capsys
 ):
-    asked = ["export", *CASE, *options.split(), "--engine", engine, "--p-dt", "5e-4"]
-    assert rocking([*asked, "--out", str(tmp_path / "scene")]) == 0
-    output = capsys.readouterr().out
-    assert f"to expect: {expected}" in output
-    assert run_scripts("pymunk", tmp_path / "scene/block.py").returncode == 0
-    refused(capsys, [*asked, "--out", tmp_path / "scene"], "it must be a new or an empty folder")
+    row = compared(capsys, *CASE, *options.split(), "--sources", source)[1][source]
+    place = ["--engine", source.removesuffix(":tuned"), "--out", str(tmp_path / "scene")]
+    assert rocking(["export", *CASE, *options.split(), *place]) == 0
+    told = re.search(r"to expect: (\S+)", capsys.readouterr().out)[1]
+    assert told.startswith(expected)
+    found = row["slips"][0] if "slide" in options else row["peak_ratio"]
+    assert float(told) == pytest.approx(found, rel=1e-11)
+    files = "".join(path.read_text() for path in (tmp_path / "scene").iterdir())
+    assert all(words in files for words in held.split("|"))
+    engine = source.partition(":")[0]
+    assert run_scripts(engine, tmp_path / "scene/block.py").returncode == 0
+    asked = ["export", *CASE, *options.split(), *place]
+    refused(capsys, asked, "it must be a new or an empty folder")
 
 
 def test_what_no_call_made_cannot_be_written_down():
@@ -153,15 +158,3 @@ def test_a_file_that_cannot_be_written_leaves_no_part_of_a_script(tmp_path, monk
     with pytest.raises(UnicodeEncodeError):
         rocking(["export", *CASE, "--engine", "pymunk", "--out", str(tmp_path / "scene")])
     assert list((tmp_path / "scene").iterdir()) == []
-
-
-def test_a_scene_is_exported_with_a_friction_and_a_step(tmp_path, capsys):
-    own = ("--friction", "0.8", "--dt", "0.002")
-    row = compared(capsys, *CASE, *own, "--sources", "mujoco:default")[1]["mujoco:default"]
-    place = ["--engine", "mujoco:default", "--out", str(tmp_path / "scene")]
-    assert rocking(["export", *CASE, *own, *place]) == 0
-    told = float(re.search(r"to expect: (\S+)", capsys.readouterr().out)[1])
-    assert told == pytest.approx(row["peak_ratio"], rel=1e-11)
-    script = tmp_path / "scene" / "block.py"
-    assert run_scripts("mujoco", script).returncode == 0 and "DT = 0.002 " in script.read_text()
-    assert 'friction="0.8 ' in (tmp_path / "scene" / "block.xml").read_text()

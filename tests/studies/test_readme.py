@@ -72,17 +72,13 @@ def test_what_helps_has_a_price(tmp_path):
 
 
 def test_the_first_run_and_a_later_one_are_timed_apart():
-    later = {"runs": [run_of(False, 9, 9, 21.4), run_of(False, 9, 2, 3.0)]}
-    first = {"runs": [run_of(True, 9, 9, 80.9)]}
-    both = "81 s the first time, when its functions are compiled, then 21 s"
-    assert facts.lasts(later, first) == both == facts.lasts(first, later)
-    unknown = "a time that was not measured"
-    assert facts.lasts(later) == both.replace("81 s", unknown)
-    assert facts.lasts(first) == both.replace("21 s", unknown)
-
-
-def run_of(first, rows, computed, duration_s):
-    return {"first": first, "rows": rows, "computed": computed, "duration_s": duration_s}
+    runs = [(False, 9, 9, 21.4), (False, 9, 2, 3.0), (True, 9, 9, 80.9)]
+    names = ("first", "rows", "computed", "duration_s")
+    runs = [dict(zip(names, run, strict=True)) for run in runs]
+    later, first = {"runs": runs[:2]}, {"runs": runs[2:]}
+    for records, seconds in (((later, first), [81, 21]), ((later,), [21]), ((first,), [81])):
+        for ordered in (records, records[::-1]):
+            assert [int(it) for it in re.findall(r"\d+", facts.lasts(*ordered))] == seconds
 
 
 def test_every_link_of_a_page_leads_somewhere():
@@ -213,14 +209,3 @@ def test_what_a_column_means_in_one_table_is_a_column_of_it_and_means_another_th
     for (table, name), told in columns().items():
         assert not table or name in as_written(stems[table])[0], table
         assert not table or told != columns().get(("", name))
-
-
-def test_the_line_of_the_guide_reads_a_table():
-    guide = (ROOT / "studies" / "GUIDE.md").read_text(encoding="utf-8")
-    section = guide[guide.index("## The tables as data") :]
-    code = re.search("```python\n(.*?)```", section, re.DOTALL)[1]
-    known = {}
-    exec(code.replace("studies/published", PUBLISHED.as_posix()), known)
-    assert "studies" not in re.findall(r"(?:from|import) (\w+)", code)
-    assert known["summary"]["cases"].max() == 960
-    assert set(known["meaning"].index) == set(known["summary"].columns)

@@ -216,13 +216,17 @@ def test_a_failed_row_is_named_and_the_exit_code_is_1(monkeypatch, capsys, tmp_p
     output = capsys.readouterr()
     assert output.err.splitlines() == ["failed: never: it never converged"]
     assert json.loads(output.out.splitlines()[1])["peak_ratio"] is None
-    assert run(["sweep", "--figure", "6", "--sources", "never", "--out", str(tmp_path)]) == 1
+    monkeypatch.setitem(SOURCES, "neither", Source("model", never))
+    asked = ["--figure", "6", "7", "--sources", "never", "neither", "--jobs", "2"]
+    assert run(["sweep", *asked, "--out", str(tmp_path / "made" / "here")]) == 1
     errors = capsys.readouterr().err.splitlines()
     assert "figure 6, aspect 2, width_m 0.5, omega_over_p 0.1" in errors[0]
-    assert (len(errors), errors[-1]) == (11, "failed: 230 more")
-    table = pd.read_csv(tmp_path / "sweep.csv", keep_default_na=False)
-    failed = table.groupby(["outcome", "peak_ratio", "message"]).size().to_dict()
-    assert failed == {("failed", "nan", "it never converged"): 240}
+    assert (len(errors), errors[-1]) == (11, "failed: 950 more")
+    table = pd.read_csv(tmp_path / "made" / "here" / "sweep.csv", keep_default_na=False)
+    assert not table.duplicated(["figure", "aspect", "width_m", "omega_over_p", "source"]).any()
+    assert table.groupby(["figure", "source"]).size().tolist() == [240] * 4
+    told = table[["outcome", "peak_ratio", "message"]].drop_duplicates().to_numpy().tolist()
+    assert told == [["failed", "nan", "it never converged"]]
 
 
 BY_NUMBERS = [
