@@ -37,6 +37,8 @@ SEEN = {
 }
 """What an engine shows of a scene besides."""
 TABLES = ("frame", "slide", "floor")
+INSTEAD = r"^as (\w+:[\w-]+)"
+"""How a message begins where a preset stands in for one that a scene does not allow."""
 RIGHT, MISSED, THROWN_OFF = "right", "missed slip", "thrown off"
 """Verdicts on a slide, beside `WORDS`; see `engines.run.slide.LEAST_LIFT`."""
 
@@ -175,8 +177,11 @@ def summed(rows: pd.DataFrame, scene: str) -> pd.DataFrame:
 
 
 def built(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows of what an engine is built for."""
-    return rows[rows["reason"] != Reason.UNAVAILABLE.name]
+    """Return the rows of what an engine is built for, once, under the preset that was used."""
+    used = rows["message"].astype(str).str.extract(INSTEAD)[0].fillna(rows["source"])
+    rows = rows[rows["reason"] != Reason.UNAVAILABLE.name].assign(source=used)
+    case = [name for name in ("case", "floor", "rest_s", "source") if name in rows]
+    return rows.drop_duplicates(case, ignore_index=True)
 
 
 def _of_frames(rows: pd.DataFrame) -> Row:

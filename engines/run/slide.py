@@ -5,8 +5,12 @@ See EQUATIONS.md, "The sliding block".
 
 import math
 from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
 
 from analytic.response import History, Outcome, Response
+from analytic.slide import SlidingBlock
 from engines.run.rows import Row, put
 from engines.run.watch import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS
 from engines.scene import Scene
@@ -39,6 +43,7 @@ class Slide:
     slow: float = 0.0  # velocity up to which it does not slide [m/s]
     still: float = 0.0  # time after which it is at rest [s]
     motion_end: float = 0.0
+    latest: float = 0.0  # by when it should have stopped twice over [s]
     end: float = 0.0  # of the observation [s]
     keeps_rows: bool = False  # a history is wanted
     place: float = 0.0  # last one relative to the base [m]
@@ -62,16 +67,20 @@ class Slide:
 
 def begin_slide(scene: Scene) -> Slide:
     """Return where a box that slides begins."""
-    body, gravity = scene.bodies[0], scene.system.gravity
+    body, gravity, motion = scene.bodies[0], scene.system.gravity, scene.motion
     place = body.at.x - body.home[0]
+    still = STILL_TIME * math.sqrt(body.width / gravity)
+    fastest = 2.0 * abs(motion.velocity(np.linspace(0.0, motion.duration, 1001))).max()
+    slows = cast(SlidingBlock, scene.system).friction * gravity
     return Slide(
         on=True,
         home=body.home[0],
         half_height=0.5 * body.height,
         width=body.width,
         slow=SLIP_RATE * math.sqrt(gravity * body.width),
-        still=STILL_TIME * math.sqrt(body.width / gravity),
-        motion_end=scene.motion.duration,
+        still=still,
+        motion_end=motion.duration,
+        latest=motion.duration + 2.0 * (fastest + abs(scene.start[1])) / slows + TREMORS * still,
         end=math.inf if scene.duration is None else scene.duration,
         keeps_rows=scene.times is not None,
         place=place,
@@ -111,7 +120,8 @@ def see_slide(slide: Slide, rows: FloatArray, slips: FloatArray, time: float, po
     slide.overturned = abs(pose.theta) > LYING_PART * LYING
     stays = time - slide.stays_since >= TREMORS * slide.still
     rests = stays or (slide.way == 0.0 and time - slide.since >= slide.still)
-    over = time >= slide.motion_end and slide.end == math.inf and rests
+    # an engine may let it creep on for ever
+    over = slide.end == math.inf and time >= (slide.motion_end if rests else slide.latest)
     slide.done = slide.overturned or over or time >= slide.end
 
 

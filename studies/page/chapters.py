@@ -78,7 +78,7 @@ PUBLISHED_WITH = {
     "box2d:default dart:default rapier:default physx:default mujoco:recommended "
     "pybullet:recommended pymunk:recommended box2d:recommended dart:recommended "
     "rapier:recommended physx:recommended mujoco:tuned",
-    "scenes": "--sources engines engines:tuned engines:recommended engines:default",
+    "scenes": "--time-limit 60 --sources engines engines:tuned engines:recommended engines:default",
 }
 """Folder -> arguments of the published run, where they are others than those of a full one."""
 CHAPTERS: dict[str, tuple[Part, ...]] = {

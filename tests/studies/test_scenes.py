@@ -19,14 +19,14 @@ from studies.scenes import finding, jobs, measure, tabulate
 
 FRAME_ROW = {
     **{"scene": "frame", "source": "pymunk:tuned", "columns": 2, "load": 2.0, "amplitude_g": 0.4},
-    **{"omega_over_p": 2.0, "case": 0, "reason": ""},
+    **{"omega_over_p": 2.0, "case": 0, "reason": "", "message": ""},
     **{"outcome": "rocked", "steps": 10, "wall_s": 1e-3, "exact": 0.2, "right": True},
     **{"error": 1e-3, "parting": 0.0, "tilt": 0.0, "drift_m": 0.0},
 }
 SLIDE_ROW = {
-    **{"scene": "slide", "source": "pymunk:tuned", "case": "sine", "reason": "", "wall_s": 1e-3},
+    **{"scene": "slide", "source": "pymunk:tuned", "case": 0, "reason": "", "wall_s": 1e-3},
     **{"outcome": "slid", "slips": 2, "exact_slips": 2, "slip_error_m": 2e-3, "lift_m": 0.0},
-    **{"verdict": "right", "slip_error": 1e-3},
+    **{"verdict": "right", "slip_error": 1e-3, "message": ""},
 }
 
 
@@ -51,10 +51,11 @@ def test_a_frame_that_hardly_moves_misses_the_rocking(part, right):
 
 def test_a_block_that_is_held_is_no_wrong_slide_and_what_is_not_built_counts_nowhere():
     held = {**SLIDE_ROW, "exact_slips": 0, "slip_error_m": math.nan, "outcome": "at rest"}
-    crept = {**held, "outcome": "slid", "slip_error_m": 1e-4}
-    fewer = {**SLIDE_ROW, "slip_error_m": math.nan, "verdict": "missed slip"}
+    held, crept = ({**held, "case": number} for number in (1, 2))
+    crept |= {"outcome": "slid", "slip_error_m": 1e-4}
+    fewer = {**SLIDE_ROW, "case": 3, "slip_error_m": math.nan, "verdict": "missed slip"}
     unbuilt = {**SLIDE_ROW, "source": "newton", "reason": Reason.UNAVAILABLE.name}
-    thrown = {**SLIDE_ROW, "verdict": "thrown off"}
+    thrown = {**SLIDE_ROW, "case": 4, "verdict": "thrown off"}
     (line,) = of([SLIDE_ROW, held, crept, fewer, unbuilt, thrown], "slide-summary")
     assert (line["slides"], line["wrong"], line["thrown_off"]) == (5, 2, 1)
     assert (line["largest_slip_error_m"], line["creep_m"]) == (2e-3, 1e-4)
@@ -80,9 +81,11 @@ def test_the_finding_takes_the_worst_engine_of_the_best_presets():
 
 
 def test_frames_are_summed_up_beside_the_critical_rotation():
-    rows = [{**FRAME_ROW, "error": error} for error in (1e-3, -1e-3, 2e-3, -0.5)]
-    lost = {"error": math.nan, "outcome": "failed", "right": False, "reason": "PARTED"}
-    (line,) = of([*rows, {**FRAME_ROW, **lost}], "frame-summary")
+    errors = enumerate((1e-3, -1e-3, 2e-3, -0.5))
+    rows = [{**FRAME_ROW, "case": case, "error": error} for case, error in errors]
+    lost = {"case": 4, "error": math.nan, "outcome": "failed", "right": False, "reason": "PARTED"}
+    instead = {**rows[0], "source": "pymunk", "message": "as pymunk:tuned; it slid"}  # twice one
+    (line,) = of([*rows, {**FRAME_ROW, **lost}, instead], "frame-summary")
     assert (line["frames"], line["wrong"], line["parted"]) == (5, 1, 1)
     assert (line["median_error"], line["max_error"]) == pytest.approx((1.5e-3, 0.5))
     assert line["p90_difference"] == pytest.approx(0.2 * np.quantile([1e-3, 1e-3, 2e-3, 0.5], 0.9))
