@@ -10,7 +10,6 @@ from typing import cast
 import numpy as np
 
 from analytic.response import History, Outcome, Response
-from analytic.slide import SlidingBlock
 from engines.run.rows import Row, put
 from engines.run.watch import DIVERGED, LYING, LYING_PART, SANK, THROWN, THROWN_WIDTHS
 from engines.scene import Scene
@@ -71,7 +70,7 @@ def begin_slide(scene: Scene) -> Slide:
     place = body.at.x - body.home[0]
     still = STILL_TIME * math.sqrt(body.width / gravity)
     fastest = 2.0 * abs(motion.velocity(np.linspace(0.0, motion.duration, 1001))).max()
-    slows = cast(SlidingBlock, scene.system).friction * gravity
+    slows = cast(float, scene.friction) * gravity
     return Slide(
         on=True,
         home=body.home[0],
