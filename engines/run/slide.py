@@ -70,7 +70,7 @@ def begin_slide(scene: Scene) -> Slide:
     place = body.at.x - body.home[0]
     still = STILL_TIME * math.sqrt(body.width / gravity)
     fastest = 2.0 * abs(motion.velocity(np.linspace(0.0, motion.duration, 1001))).max()
-    slows = cast(float, scene.friction) * gravity
+    slows = max(cast(float, scene.friction), 1e-3) * gravity
     return Slide(
         on=True,
         home=body.home[0],
