@@ -86,7 +86,12 @@ def test_frames_are_summed_up_beside_the_critical_rotation():
     lost = {"case": 4, "error": math.nan, "outcome": "failed", "right": False, "reason": "PARTED"}
     instead = {**rows[0], "source": "pymunk", "message": "as pymunk:tuned; it slid"}  # twice one
     (line,) = of([*rows, {**FRAME_ROW, **lost}, instead], "frame-summary")
-    assert (line["frames"], line["wrong"], line["parted"]) == (5, 1, 1)
+    (other,) = of(
+        [{**row, "columns": 3} for row in (rows[3], {**FRAME_ROW, **lost})], "frame-summary"
+    )
+    assert [other[name] for name in ("frames", "more", "more_wrong", "more_parted")] == [0, 2, 1, 1]
+    assert other["more_median_error"] == 0.5
+    assert (line["frames"], line["wrong"], line["more"]) == (5, 1, 0)
     assert (line["median_error"], line["max_error"]) == pytest.approx((1.5e-3, 0.5))
     assert line["p90_difference"] == pytest.approx(0.2 * np.quantile([1e-3, 1e-3, 2e-3, 0.5], 0.9))
 
