@@ -303,8 +303,8 @@ steps apply to frames only. A row says what an engine cannot do. Takes two hours
     needed=lambda rows: [row for row in rows if row["reason"] != Reason.UNAVAILABLE.name],
     split="scene",
     captions={
-        "frame-time": "Each engine and preset on frames of two columns: the median and the largest error of the "
-        "peak, the number of wrong outcomes, and the run time of a case.",
+        "frame-time": "Each engine and preset on frames of two columns: the median and the largest "
+        "error of the peak, the number of wrong outcomes, and the run time of a case.",
     },
     **stages(jobs, measure, tabulate, finding, shown, figures),
 )
