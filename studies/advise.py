@@ -77,7 +77,7 @@ def command(
 
     For one engine it prints the lines to paste, their errors on 60 random boxes, where they fail,
     and their sources; for several engines the errors only. It reads the published tables, and runs
-    nothing. With --out it measures them again, in half an hour.
+    nothing. With --out it measures them again, in an hour.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def _exact(case: Question) -> Row:
 def tabulate(rows: pd.DataFrame) -> Tables:
     """Return the rows with their errors, a line for each setting, and lines to paste."""
     boxes = beside(rows)
-    advice = _lines(boxes, *SETTING)
+    advice = _lines(boxes[boxes["kind"] == "pulse"], *SETTING)
     lines = [
         {"engine": engine, "dt_s": dt_s, "literal": line}
         for engine, dt_s in advice[["engine", "dt_s"]].drop_duplicates().itertuples(index=False)
@@ -245,7 +245,7 @@ def shown(tables: Tables) -> Tables:
     columns = ["engine", "dt_s", "preset", *KINDS, "median_error", "max_error", "ill_max_error"]
     bad = unadvised(tables[ADVICE])
     return {
-        "Random boxes at a friction of 0.8; ill_max_error where S ≥ 10": tables[ADVICE][
+        "Random boxes, under pulses, friction 0.8; ill_max_error where S ≥ 10": tables[ADVICE][
             [*columns, "yaw_deg", "slip_widths", "wall_s"]
         ],
         "By what moves the box, all engines": by_kind(tables[BY_KIND]),
