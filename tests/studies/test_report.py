@@ -33,8 +33,8 @@ from studies.page.page import AXES, engine_cases
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 SMALL = {
-    "sweep": ("--figure", "6", "--sources", "exact", "modified", "rk4"),
-    "histories": ("--figure", "4", "--sources", "exact", "moreau"),
+    "sweep": "--figure 6 --sources exact modified rk4",
+    "histories": "--figure 4 --sources exact moreau",
 }
 """Chapters that are quickly made, and their arguments here."""
 SMALL_OF = {part.folder: part for part in PARTS}
