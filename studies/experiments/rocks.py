@@ -210,7 +210,7 @@ def _of_engines(tables: Tables) -> str:
     )
     better = sorted(set(lines.loc[(exact > 0.0) | (rule > 0.0), "source"]))
     return (
-        f" With its best block, {listed(better) if better else 'no engine'} predicts "
+        f" Given the block that fits best, {listed(better) if better else 'no engine'} predicts "
         f"{lines['tests'].max()} tests better, beyond chance, than the exact block or two "
         f"thresholds; {lines.loc[exact < 0.0, 'source'].nunique()} of "
         f"{lines['source'].nunique()} engines and presets predict them worse than the exact block."
