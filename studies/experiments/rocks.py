@@ -234,8 +234,9 @@ def shown(tables: Tables) -> Tables:
         "block that fits all tests": tables["areas"],
         "Tests that block, rule and authors get wrong": lost_by_all(tables),
         **{
-            f"Engines with the block {block!r} in {lines['tests'].max()} tests drawn at random; in "
-            "the same the exact block and a rule, fitted to all: part that is right, within 95 %; "
+            f"Engines with the block {block!r} in {lines['tests'].max()} tests drawn at random, of "
+            "each record the part that can lift it; in the same tests the exact block, of whole "
+            "records, and a rule, fitted to all: part that is right, within 95 %; "
             "McNemar's p; outcomes other than the exact block's; runs without a result, which "
             "count as wrong. In the plane; with each preset's friction, as the rocks' is unknown": (
                 lines.drop(columns=["block", "tests", "missed", "alarms", *GAINS.values()])
