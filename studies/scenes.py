@@ -190,11 +190,11 @@ def _of_frames(rows: pd.DataFrame) -> Row:
     two, more = (rows[(rows["columns"] == 2) == it] for it in (True, False))
     return {
         "frames": len(two),
-        "wrong": int((~two["right"]).sum()),
+        "wrong": len(two) - int(two["right"].sum()),
         **_quantiles("error", two["size"]),
         **_quantiles("difference", two["size"] * two["exact"]),
         "more": len(more),
-        "more_wrong": int((~more["right"]).sum()),
+        "more_wrong": len(more) - int(more["right"].sum()),
         "more_parted": int(more["parted"].sum()),
         "more_median_error": more["size"].median(),
         "ms_a_frame": 1e3 * rows["wall_s"].mean(),
