@@ -32,25 +32,17 @@ CASES, TESTS = {False: (500, 100), True: (300, 20)}, (100, 10)
 
 @dataclass(frozen=True, kw_only=True)
 class Options(EffortOptions):
-    """Which random cases, and whether at half the step, too.
-
-    Attributes
-    ----------
-    halves
-        Run every engine at half its step, too, and find the factor with which the difference of
-        the two peaks bounds the error.
-    cases
-        Number of random cases; by default 500, with --halves 300.
-    seed
-        Seed of the random numbers, a positive whole number; another one draws other cases.
-    scene
-        block: one block that rocks. frame: a beam on 2 to 5 columns.
-    """
+    """Which random cases, and whether at half the step, too."""
 
     halves: bool = False
+    """Run every engine at half its step, too, and find the factor with which the difference of the
+    two peaks bounds the error."""
     cases: Count | None = None
+    """Number of random cases; by default 500, with --halves 300."""
     seed: Count = 1
+    """Seed of the random numbers, a positive whole number; another one draws other cases."""
     scene: Annotated[Drawn, one_of(Drawn)] = "block"
+    """block: one block that rocks. frame: a beam on 2 to 5 columns."""
 
 
 def jobs(sources: Sequence[str], quick: bool, options: Options) -> list[Job]:
