@@ -103,8 +103,10 @@ def variants(engine: str) -> Iterator[Variant]:
         use.name: Variant(engine=engine, preset=use.name, level=use.title)
         for use in declared.presets
     }
-    for name in [name for name in plain if name not in (*factors.BOTH, AT_REST, PASTED)]:
+    for name in [name for name in plain if name not in (*factors.BOTH, AT_REST)]:
         yield plain[name]
+        if name == PASTED:
+            yield from _less(plain[name])
         for help_, settings in declared.preset(name).helped_by.items():
             if settings is not None:
                 level = help_.name.lower()
@@ -121,6 +123,19 @@ def variants(engine: str) -> Iterator[Variant]:
             if set(factors.BOTH) <= plain.keys():
                 yield from _exchanged(plain[name], factor)
             yield from _levels(plain[name], factor)
+
+
+def _less(pasted: Variant) -> Iterator[Variant]:
+    """Yield what is pasted without one of its settings; friction is not one of them."""
+    declared = ENGINES[pasted.engine]
+    mine, default = (asdict(declared.preset(name).settings) for name in (PASTED, factors.DEFAULT))
+    apart = [name for name in mine if mine[name] != default[name] and name != "friction"]
+    together = {name: factor.settings for factor in declared.factors for name in factor.settings}
+    kin = ([each for each in apart if each in together.get(name, (name,))] for name in apart)
+    for names in dict.fromkeys(map(tuple, kin)):
+        level = " and ".join(names).replace("_", " ")
+        setting = {name: default[name] for name in names}
+        yield replace(pasted, factor=factors.LEFT_OUT, level=level, settings=setting)
 
 
 def _levels(plain: Variant, factor: factors.Factor) -> Iterator[Variant]:
@@ -272,12 +287,15 @@ def shown(tables: Tables) -> Tables:
     lines = tables["variants"]
     plain = lines["factor"] == ""
     own = lines[lines["factor"] == factors.OWN_STEPS]
+    pasted = lines[lines["preset"] == PASTED]
+    pasted = pasted.assign(left_out=pasted["level"].mask(pasted["factor"] == "", "nothing"))
     measured = ["median_error", "ratio_over_eta", "newton_e"]
     measured += ["slip_widths", "sink_widths", "step_s"]
     traps = lines[(lines["trap"] != "") & ~plain]
     return {
         "Each tuned setting at its default, where all others are tuned": left_at_default(lines),
         "Presets as they are": lines.loc[plain, ["engine", "preset", "cases", *FOUND, *measured]],
+        "What is pasted, without one setting": pasted[["engine", "left_out", *FOUND]],
         "Defaults at their own step": own[["engine", "level", *FOUND]],
         "Traps": traps[[*KEY, *FOUND, "trap"]],
     }

@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 
 from analytic.response import Response
 from engines import ENGINES, installed_engines
+from engines.declaration import PASTED
 from engines.factors import AS_BEST, BEST, BY_DEFAULT, DEFAULT, OWN_STEPS
 from studies import contact, restitution
 from studies.cases.paper import chosen_cases
@@ -88,6 +89,14 @@ def test_what_changes_the_defaults_is_asked_at_the_library_s_own_step_too(engine
     assert {job.options["frame"] for job in still} <= {"base"}
     assert not any("step" in job.options for job in (*own, *still))
     assert len({job.key for job in jobs}) == len(jobs)
+
+
+def test_what_is_pasted_is_tried_whole_and_without_each_of_its_settings():
+    tried = [(v.level, v.settings) for v in variants("mujoco") if v.preset == PASTED][1:]
+    assert tried == [
+        ("impedance", {"impedance": None}),
+        ("geom reference", {"geom_reference": None}),
+    ]
 
 
 @pytest.mark.parametrize("engine", [name for name in installed_engines() if ENGINES[name].stacks])
