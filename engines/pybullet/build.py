@@ -91,6 +91,9 @@ class BulletSettings(Settings):
     # velocity, or by position alone
     floor: str = setting("constraint", names=("constraint", "velocity", "position"))
     solver: str | None = setting(names=tuple(SOLVERS))
+    # part of a column by which bodies begin inside each other: two boxes that only touch have no
+    # contact, and a beam that falls in the first step is thrown up
+    overlap: float = setting(0.0, least=0.0, most=1e-6)
     warm_starting: float | None = setting(least=0.0, most=1.0)
     split_impulse: bool | None = None
     cone_friction: bool | None = None
@@ -277,7 +280,8 @@ class BulletWorld(Adapter):
         p.stepSimulation(physicsClientId=client)
         for number, body in zip(self.bodies, bodies, strict=True):
             at, half = body.mass_at, 0.5 * body.at.theta
-            turned, place = (0.0, math.sin(half), 0.0, math.cos(half)), (at.x, 0.0, at.z)
+            turned = (0.0, math.sin(half), 0.0, math.cos(half))
+            place = at.x, 0.0, at.z * (1.0 - 2.0 * self._s.overlap)
             velocity, rate = (at.velocity_x, 0.0, at.velocity_z), (0.0, at.rate, 0.0)
             p.resetBasePositionAndOrientation(number, place, turned, physicsClientId=client)
             p.resetBaseVelocity(number, velocity, rate, physicsClientId=client)
