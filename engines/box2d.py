@@ -303,11 +303,7 @@ ENGINE = Engine(
     presets=(
         NAIVE,
         replace(NAIVE.at_rest(), rest_s=0.0),  # it would count as time to fall asleep
-        NAIVE.recommended(
-            *RECOMMENDED,
-            iterations=8,
-            position_iterations=3,
-        ),
+        NAIVE.recommended(*RECOMMENDED, iterations=8, position_iterations=3),
         Preset(name="tuned", settings=TUNED, step=1e-3, helped_by={Help.MARGIN: {"margin": None}}),
         landing(
             replace(TUNED, reflection=True),

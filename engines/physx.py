@@ -390,11 +390,7 @@ ENGINE = Engine(
             sleeping=False,
         ),
         Preset(name="tuned", settings=TUNED, step=1e-3),
-        landing(
-            LANDING,
-            {Help.REFLECTION: {"reflection": False}},
-            stacked=None,
-        ),
+        landing(LANDING, {Help.REFLECTION: {"reflection": False}}, stacked=None),
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,

@@ -11,7 +11,7 @@ from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 
 from engines.declaration import Builder, Engine, Preset, landing
-from engines.settings import Settings, one_of, setting
+from engines.settings import Settings, setting
 
 FURTHER = "ROCKING_ENGINES"
 """Environment variable: engines that no package announces, as "name=module:ENGINE name=..."."""
@@ -141,14 +141,6 @@ def installed_engines() -> tuple[str, ...]:
     True
     """
     return tuple(name for name, engine in ENGINES.items() if engine.installed)
-
-
-def find(name: str | Engine) -> Engine:
-    """Return an engine by its name, or as it is given; ValueError if there is none."""
-    if isinstance(name, Engine):
-        return name
-    one_of("engine", name, ENGINES)
-    return ENGINES[name]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -19,9 +19,6 @@ from studies.measures.wrongness import counted, wrong_in
 WELL_CONDITIONED = 10.0
 """Below this κ the error of a peak says more about its source than about the case."""
 
-OF_FRAMES = ("exact_outcome", "exact_peak", "agrees", "error", "kappa", "kappa_eta", "sensitivity")
-"""Columns that `with_reference` adds to rows of frames."""
-
 
 def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     """Add the exact outcome and peak of every case, and the difference of each row from them."""
@@ -29,15 +26,15 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     posed, eta, back = _different(rows)
     peak, outcome = peak_ratios(*posed, restitution=eta)
     condition = condition_numbers(*posed, restitution=eta)
-    joined = rows.assign(
-        kappa=condition.amplitude[back],
-        kappa_eta=condition.restitution[back],
-        sensitivity=sensitivities(*posed, restitution=eta)[back],
-        exact_peak=peak[back],
-        exact_outcome=[str(getattr(it, "value", it)) for it in outcome[back]],
+    return beside(
+        rows.assign(
+            kappa=condition.amplitude[back],
+            kappa_eta=condition.restitution[back],
+            sensitivity=sensitivities(*posed, restitution=eta)[back],
+            exact_peak=peak[back],
+            exact_outcome=[str(getattr(it, "value", it)) for it in outcome[back]],
+        )
     )
-    compared = beside(joined)
-    return compared[[*rows, *OF_FRAMES]] if "load" in rows else compared
 
 
 def beside(joined: pd.DataFrame) -> pd.DataFrame:

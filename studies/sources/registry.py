@@ -16,7 +16,7 @@ from analytic.response import Response
 from analytic.slide import SlidingBlock
 from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
-from engines.registry import FURTHER, find, named
+from engines.registry import FURTHER, named
 from engines.registry import announce as announce_engine
 from engines.scene import Scene, System
 from engines.settings import one_of, perhaps
@@ -90,7 +90,7 @@ def run_engine(
     from engines.run.run import run
 
     scene = scene_of(block, motion, preset, **options)
-    return run(find(engine).use(scene))
+    return run(ENGINES[engine].use(scene))
 
 
 def scene_of(
