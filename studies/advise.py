@@ -15,9 +15,7 @@ from typing import Annotated, Any, TypeAlias, cast
 import pandas as pd
 from cyclopts import Parameter
 
-from analytic import conditioning, sensitivity, simulate
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
+from analytic import RigidBlock, SinePulse, conditioning, sensitivity, simulate
 from engines import ENGINES
 from engines.declaration import AT_REST, PASTED
 from engines.factors import DEFAULT

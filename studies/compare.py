@@ -10,12 +10,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analytic import RigidBlock
-from analytic.frame import RockingFrame
+from analytic import Outcome, Record, Response, RigidBlock, RockingFrame, SlidingBlock
 from analytic.motion import BothWays, Motion, SinePulse, Still
-from analytic.record import Record
-from analytic.response import Outcome, Response
-from analytic.slide import SlidingBlock
 from analytic.start import strongest
 from engines.scene import System
 from studies.cases.paper import PULSES

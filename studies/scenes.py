@@ -12,10 +12,8 @@ from typing import Any, cast
 import numpy as np
 import pandas as pd
 
-from analytic import Delayed, Record, SinePulse, SlidingBlock
-from analytic.block import GRAVITY
+from analytic import GRAVITY, Delayed, Record, SinePulse, SlidingBlock, simulate
 from analytic.response import Outcome, Reason, Response
-from analytic.simulate import simulate
 from engines.factors import DEFAULT
 from engines.run.run import LAG
 from studies.cases.drawn import calm_frames, slides

@@ -11,8 +11,7 @@ from typing import Annotated
 import numpy as np
 import pandas as pd
 
-from analytic import simulate
-from analytic.response import Outcome
+from analytic import Outcome, simulate
 from engines.declaration import AT_REST
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.refusal import BadInputError

@@ -10,8 +10,7 @@ import numpy as np
 import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
+from analytic import RigidBlock, SinePulse
 from engines import ENGINES
 from engines.declaration import AT_REST, REST_S
 from engines.factors import BEST

@@ -9,11 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic import MODELS, integrate, simulate
-from analytic.block import RigidBlock
+from analytic import MODELS, Response, RigidBlock, SlidingBlock, integrate, simulate
 from analytic.motion import BothWays, Motion
-from analytic.response import Response
-from analytic.slide import SlidingBlock
 from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
 from engines.registry import FURTHER, named

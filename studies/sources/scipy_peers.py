@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from analytic.block import RigidBlock
+from analytic import History, Impact, Outcome, Response, RigidBlock
 from analytic.kernels.excursions import BROKEN
 from analytic.kernels.rest import acceleration, after_impact, ground, next_uplift, segment_at
 from analytic.motion import FloatArray, Motion
-from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import FAILURES
 from analytic.start import REST, Posed, check_vertical, pose
 

@@ -8,8 +8,7 @@ import pandas as pd
 import pytest
 from given import BLOCK, PULSE
 
-from analytic import frame_demands, simulate
-from analytic.response import Outcome
+from analytic import Outcome, frame_demands, simulate
 from engines.scene import BEAM_DEPTH, SPACING
 from studies import respond, validate
 from studies.cases.drawn import FRICTION, LEAST_NORMAL, draw
