@@ -23,7 +23,6 @@ from engines.registry import OWN
 from engines.run.run import YAW
 from studies.cases.drawn import Kind, free_boxes
 from studies.kit import arguments
-from studies.kit.arguments import Running
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import aligned, as_text, duration, out_of, part
 from studies.kit.scene_options import Height, Width, block_of
@@ -69,7 +68,7 @@ def command(
     error: Annotated[tuple[arguments.Positive, ...], arguments.several_or_none] = (),
     out: arguments.Place | None = None,
     quick: bool = False,
-    running: Running = Running(),  # noqa: B008
+    running: arguments.Running = arguments.Running(),  # noqa: B008
 ) -> int:
     """Print the lines with which a free box on a floor at rest rocks accurately, and their errors.
 
