@@ -33,8 +33,7 @@ SEEN = {
     "slide": ("place_m", "lift_m", "flat_m", "turn_rad"),
     "floor": (LAG,),
 }
-"""What an engine shows of a scene besides."""
-TABLES = ("frame", "slide", "floor")
+"""Scene, of a table of its own -> what an engine shows of it besides."""
 INSTEAD = r"^as (\w+:[\w-]+)"
 """How a message begins where a preset stands in for one that a scene does not allow."""
 RIGHT, MISSED, THROWN_OFF = "right", "missed slip", "thrown off"
@@ -158,7 +157,7 @@ def _slip_error(response: Response, exact: Response) -> float:
 def tabulate(rows: Tables) -> Tables:
     """Return the rows of each scene, and a line for each source that is built for it."""
     tables = {}
-    for name in TABLES:
+    for name in SEEN:
         tables[name] = mine = rows.get(name, pd.DataFrame())
         tables[f"{name}-summary"] = summed(mine, name)
     return tables

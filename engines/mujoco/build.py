@@ -267,7 +267,6 @@ class MujocoWorld:
         self._mj.set_mju_user_warning(lambda message: None)
 
     def _set_out(self) -> None:
-        """Let the bodies set out from where the scene begins."""
         places: list[float] = []
         velocities: list[float] = []
         for body in self._scene.bodies:

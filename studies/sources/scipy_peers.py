@@ -121,7 +121,6 @@ class _March:
         return path
 
     def _record(self, path: Any, side: float) -> None:
-        """Keep the peak of a stretch, and its samples."""
         self.peak = max(self.peak, path.y[0].max(), *(float(top[0]) for top in path.y_events[1]))
         wanted = self.posed.times * self.p
         inside = (wanted >= path.t[0]) & (wanted <= path.t[-1])
