@@ -54,7 +54,6 @@ class Box2DWorld(Adapter):
     """Bodies on one kinematic body, or on one for each corner of a block."""
 
     library = "Box2D"
-    called = "Box2D"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         s = self._s

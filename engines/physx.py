@@ -73,7 +73,6 @@ class PhysxWorld(Adapter):
     """Bodies on a kinematic box, whether that moves or not."""
 
     library = "sapien"
-    called = "sapien"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         settings = self._s

@@ -19,13 +19,8 @@ FURTHER = "ROCKING_ENGINES"
 GROUP = "rocking.engines"
 """Entry points of other packages in this group are engines: name -> "module:ENGINE"."""
 
-OWN = {
-    name: f"engines.{name}:ENGINE"
-    for name in (
-        *("pybullet", "mujoco", "pymunk", "box2d", "dart"),
-        *("rapier", "drake", "newton", "physx"),
-    )
-}
+NAMES = ("pybullet", "mujoco", "pymunk", "box2d", "dart", "rapier", "drake", "newton", "physx")
+OWN = {name: f"engines.{name}:ENGINE" for name in NAMES}
 """Name of an engine -> where its declaration stands."""
 
 

@@ -64,18 +64,16 @@ def command(
     scene = scene_of(system, motion, preset, start=start, duration=window, **options)
     questions = {"exact": {}, source: options}
     jobs = [Job(labels={}, case=case, source=each, options=of) for each, of in questions.items()]
-    rows = run(
-        jobs, with_response, place_of(Computing(jobs=1, time_limit=time_limit), at_once=True)
-    )
+    place = place_of(Computing(jobs=1, time_limit=time_limit), at_once=True)
+    rows = run(jobs, with_response, place)
     if code := exit_code(rows):
         return code
     answers = [row["response"] for row in rows]
     slides = isinstance(system, SlidingBlock)
     exact, found = (each.slips if slides else each.peak_ratio for each in answers)
     if answers[-1].outcome is Outcome.AT_REST:
-        raise BadInputError(
-            f"--engine is {engine!r}; an exported scene must move there, and stays at rest"
-        )
+        words = "an exported scene must move there, and stays at rest"
+        raise BadInputError(f"--engine is {engine!r}; {words}")
     use = ENGINES[name].use(scene)
     texts = files(use, found, exact)
     out.mkdir(parents=True, exist_ok=True)

@@ -19,12 +19,8 @@ from studies.kit.arguments import Count, EffortOptions, one_of
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables, stages
-from studies.measures.differences import (
-    WELL_CONDITIONED,
-    sensitivity_of,
-    summarize,
-    with_reference,
-)
+from studies.measures import differences
+from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
 from studies.measures.halving import BOUNDED, MOST_TRUSTED, USES, estimate_of, factors, halved
 from studies.measures.presets import titled
 from studies.measures.wrongness import KINDS
@@ -138,7 +134,8 @@ def shown(tables: Tables) -> Tables:
     errors, s = tables["errors"], sensitivity_of(tables["errors"])
     calm = f" where a peak moves by S < {WELL_CONDITIONED:g} % for 1 % of pulse or impacts"
     every = errors.assign(figure="all")
-    found = {"": summarize(every), calm: summarize(every[s < WELL_CONDITIONED])}
+    groups = {"": every, calm: every[s < WELL_CONDITIONED]}
+    found = {cases: differences.summarize(rows) for cases, rows in groups.items()}
     sizes = ["median_error", "p90_error", "max_error", "median_difference", "max_difference"]
     parts = {"Outcomes{}": ["cases", "agree", *KINDS], "Errors{}, differences over θcr": sizes}
     return {

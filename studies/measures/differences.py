@@ -26,15 +26,14 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     posed, eta, back = _different(rows)
     peak, outcome = peak_ratios(*posed, restitution=eta)
     condition = condition_numbers(*posed, restitution=eta)
-    return beside(
-        rows.assign(
-            kappa=condition.amplitude[back],
-            kappa_eta=condition.restitution[back],
-            sensitivity=sensitivities(*posed, restitution=eta)[back],
-            exact_peak=peak[back],
-            exact_outcome=[str(getattr(it, "value", it)) for it in outcome[back]],
-        )
+    joined = rows.assign(
+        kappa=condition.amplitude[back],
+        kappa_eta=condition.restitution[back],
+        sensitivity=sensitivities(*posed, restitution=eta)[back],
+        exact_peak=peak[back],
+        exact_outcome=[str(getattr(it, "value", it)) for it in outcome[back]],
     )
+    return beside(joined)
 
 
 def beside(joined: pd.DataFrame) -> pd.DataFrame:
@@ -61,12 +60,9 @@ def posed_cases(cases: pd.DataFrame) -> Posed:
     steepness = 1.0 / cases["aspect"].to_numpy(float)
     amplitude = cases["amplitude_g"] if "amplitude_g" in cases else steepness + cases["excess_g"]
     half_cycles = cases["half_cycles"] if "half_cycles" in cases else cases["pulse"].map(PULSES)
-    return (
-        np.arctan(np.asarray(steepness, np.float64)),
-        np.asarray(amplitude, np.float64),
-        np.asarray(cases["omega_over_p"], np.float64),
-        np.asarray(half_cycles, np.float64),
-    )
+    posed = np.arctan(steepness), amplitude, cases["omega_over_p"], half_cycles
+    alpha, strength, omega, cycles = (np.asarray(column, np.float64) for column in posed)
+    return alpha, strength, omega, cycles
 
 
 def _different(cases: pd.DataFrame) -> tuple[Posed, FloatArray | None, NDArray[np.intp]]:

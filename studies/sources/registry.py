@@ -170,7 +170,6 @@ def allowed() -> str:
 Accuracy = Literal["loose", "standard", "tight"]
 """Of an engine whose steps land on impacts; `engines.scene.ACCURACIES` says how many steps."""
 
-
 GROUPS = {"core": core_engines, "engines": installed_engines}
 """Word -> the names of the engines for which it stands."""
 
