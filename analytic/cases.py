@@ -159,11 +159,6 @@ def peak_ratios(
         Largest abs(theta)/alpha; inf when overturned, 0 at rest.
     outcome : ndarray of Outcome
 
-    Raises
-    ------
-    ValueError
-        If an argument is outside its range or the shapes do not broadcast.
-
     Examples
     --------
     >>> peak, outcome = peak_ratios(0.32, [0.3, 0.4, 0.9], 2.0, 1)

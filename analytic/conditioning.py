@@ -157,7 +157,6 @@ def _slopes(solve: Solve) -> tuple[FloatArray, FloatArray]:
 
 
 def _largest_move(solve: Solve) -> FloatArray:
-    """Return a sensitivity."""
     still, outcome = solve(1.0, 1.0)
     largest = np.zeros(np.shape(still))
     for move in MOVES:

@@ -46,6 +46,9 @@ class Demands(NamedTuple):
     spacing: float
 
 
+NOTHING_ASKED = Demands(base=0.0, top=0.0, pressing=1.0, spacing=0.0)
+
+
 def frame_demands(
     frame: RockingFrame,
     motion: Motion,
@@ -78,14 +81,9 @@ def frame_demands(
     until = motion.duration + FREE_TIME / frame.p
     times = np.linspace(0.0, until, SAMPLES)
     response = simulate(frame, motion, start=start, duration=until, times=times)
-    found = list(_pushes(frame, motion, response))
-    needs = [_demands(frame, *push, spacing, depth) for push in found]
-    return Demands(
-        base=max((need.base for need in needs), default=0.0),
-        top=max((need.top for need in needs), default=0.0),
-        pressing=min((need.pressing for need in needs), default=1.0),
-        spacing=max((need.spacing for need in needs), default=0.0),
-    )
+    needs = [_demands(frame, *push, spacing, depth) for push in _pushes(frame, motion, response)]
+    base, top, pressing, wide = zip(*needs or [NOTHING_ASKED], strict=True)
+    return Demands(max(base), max(top), min(pressing), max(wide))
 
 
 class Push(NamedTuple):

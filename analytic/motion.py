@@ -7,16 +7,8 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from analytic import checks
 from analytic.block import GRAVITY
-from analytic.checks import (
-    MOST_HALF_CYCLES,
-    finite,
-    finite_result,
-    measurable,
-    positive,
-    whole,
-    within,
-)
 from analytic.kernels.law import FloatArray as FloatArray
 
 SEGMENT_COLUMNS = ("start", "end", "amplitude", "omega", "phase", "offset", "slope")
@@ -93,12 +85,13 @@ class SinePulse:
     phase: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", finite("amplitude", self.amplitude))
-        object.__setattr__(self, "omega", measurable("omega", self.omega))
-        object.__setattr__(self, "phase", within("phase", self.phase, -MOST_PHASE, MOST_PHASE))
-        cycles = whole("half_cycles", self.half_cycles, MOST_HALF_CYCLES)
+        object.__setattr__(self, "amplitude", checks.finite("amplitude", self.amplitude))
+        object.__setattr__(self, "omega", checks.measurable("omega", self.omega))
+        phase = checks.within("phase", self.phase, -MOST_PHASE, MOST_PHASE)
+        object.__setattr__(self, "phase", phase)
+        cycles = checks.whole("half_cycles", self.half_cycles, checks.MOST_HALF_CYCLES)
         object.__setattr__(self, "half_cycles", cycles)
-        finite_result(
+        checks.finite_result(
             "the displacement of the ground",
             self.amplitude / self.omega**2 * (self.half_cycles * math.pi),
             f"amplitude is {self.amplitude!r} and omega {self.omega!r}",
@@ -107,7 +100,7 @@ class SinePulse:
     @classmethod
     def in_g(cls, amplitude: float, *, omega: float, **rest: Any) -> "SinePulse":
         """Return the pulse whose amplitude is given in units of g."""
-        return cls(amplitude=GRAVITY * finite("amplitude", amplitude), omega=omega, **rest)
+        return cls(amplitude=GRAVITY * checks.finite("amplitude", amplitude), omega=omega, **rest)
 
     @property
     def duration(self) -> float:
@@ -186,7 +179,7 @@ class Delayed:
     rest_s: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "rest_s", positive("rest_s", self.rest_s))
+        object.__setattr__(self, "rest_s", checks.positive("rest_s", self.rest_s))
 
     @property
     def duration(self) -> float:

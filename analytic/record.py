@@ -98,7 +98,7 @@ class Record:
             else in it leaves a doubt.
         """
         try:
-            step, _, samples = read(Path(path), units, dt, insist)
+            step, samples = read(Path(path), units, dt, insist)
             return cls(dt=step, samples=samples)
         except ValueError as problem:
             raise ValueError(f"path is {str(path)!r}; {problem}") from problem

@@ -13,17 +13,8 @@ from numpy.typing import ArrayLike
 from analytic.block import RigidBlock
 from analytic.checks import positive
 from analytic.frame import Rocker
+from analytic.kernels import excursions
 from analytic.kernels.closed_form import free_peaks
-from analytic.kernels.excursions import (
-    AT_REST,
-    BROKEN,
-    LYING,
-    OVERTURNED,
-    ROCKED,
-    TOO_LONG,
-    VANISHING,
-    Ended,
-)
 from analytic.kernels.forms import Kernel
 from analytic.kernels.law import (
     IMPACT,
@@ -96,11 +87,6 @@ def integrate(
     Response
         Its steps include those taken back; its history is interpolated by cubics.
 
-    Raises
-    ------
-    ValueError
-        If an argument is unknown or out of range.
-
     Examples
     --------
     >>> block = RigidBlock(width=0.5, height=1.5)
@@ -122,7 +108,7 @@ def integrate(
     moving = posed.then_still(posed.until if followed else math.inf)
     tread = TREAD.few(1, posed.until / step / SOME)
 
-    def solve(notes: Notes) -> Ended:
+    def solve(notes: Notes) -> excursions.Ended:
         return tread(posed.laws, moving, posed.start, followed, notes, solver)
 
     return as_response(block, posed, solve, times is not None, watched=False)
@@ -224,9 +210,9 @@ UNDECIDED = -1
 def verdict(law: Law, path: Cubic, free: bool) -> int:
     """Return whether a block is ROCKED, OVERTURNED or UNDECIDED; `free` if no ground moves it."""
     y, v = path.end, path.rate
-    if y >= LYING or (free and y > law.saddle and v >= 0.0):
-        return OVERTURNED
-    return ROCKED if free and turns(path) and y < law.saddle else UNDECIDED
+    if y >= excursions.LYING or (free and y > law.saddle and v >= 0.0):
+        return excursions.OVERTURNED
+    return excursions.ROCKED if free and turns(path) and y < law.saddle else UNDECIDED
 
 
 def next_side(
@@ -241,7 +227,7 @@ def next_side(
 
 def tread(
     laws: Laws, moving: FloatArray, start: Start, followed: bool, notes: Notes, solver: Solver
-) -> Ended:
+) -> excursions.Ended:
     """Follow one response with a fixed step as `excursions.march`, to the end if `followed`."""
     ended = moving[-1][0]
     last = moving[-1][1] if followed else ended
@@ -253,7 +239,9 @@ def tread(
             j, rise, side, _ = next_uplift(moving, j, tau, laws)
             n = sample_still(notes, min(rise, last), n, 0.0, 0.0)
             if side == 0.0:
-                outcome = AT_REST if events == 0 and start.side == 0.0 else ROCKED
+                outcome = (
+                    excursions.AT_REST if events == 0 and start.side == 0.0 else excursions.ROCKED
+                )
                 return outcome, right, left, steps, impacts, events, last, 0.0, 0.0
             tau, h = rise, solver.step
             events = note(notes.log, events, UPLIFT, tau, 0.0, 0.0)
@@ -261,15 +249,15 @@ def tread(
         if followed and tau >= last:
             ahead = free_peaks(laws, side, y, v)
             right, left = max(right, ahead[0]), max(left, ahead[1])
-            outcome = OVERTURNED if max(right, left) == math.inf else ROCKED
+            outcome = excursions.OVERTURNED if max(right, left) == math.inf else excursions.ROCKED
             return outcome, right, left, steps, impacts, events, tau, y, v
         steps += 1
         segment, begin = moving[j], State(side, tau, 0, y, v)
         landed = tau + h >= segment[1]
         length = segment[1] - tau if landed else h
         path = take_step(law, segment, begin, length, solver.rk4)
-        if not (abs(path.end) + abs(path.rate) < math.inf and length > tau * VANISHING):
-            return BROKEN, right, left, steps, impacts, events, tau, y, v
+        if not (abs(path.end) + abs(path.rate) < math.inf and length > tau * excursions.VANISHING):
+            return excursions.BROKEN, right, left, steps, impacts, events, tau, y, v
         if path.end < -solver.tolerance and length > 1e-15:
             h = FRACTION * length
             continue
@@ -293,7 +281,7 @@ def tread(
             if side == 0.0:
                 tau, v = tau + wait, 0.0
                 events = note(notes.log, events, RESTED, tau, 0.0, 0.0)
-    return TOO_LONG, right, left, steps, impacts, events, tau, y, v
+    return excursions.TOO_LONG, right, left, steps, impacts, events, tau, y, v
 
 
 TREAD = Kernel(tread)

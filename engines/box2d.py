@@ -55,7 +55,6 @@ class Box2DWorld(Adapter):
     """Bodies on one kinematic body, or on one for each corner of a block."""
 
     library = "Box2D"
-    called = "Box2D"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         s = self._s
@@ -304,11 +303,7 @@ ENGINE = Engine(
     presets=(
         NAIVE,
         replace(NAIVE.at_rest(), rest_s=0.0),  # it would count as time to fall asleep
-        NAIVE.recommended(
-            *RECOMMENDED,
-            iterations=8,
-            position_iterations=3,
-        ),
+        NAIVE.recommended(*RECOMMENDED, iterations=8, position_iterations=3),
         Preset(name="tuned", settings=TUNED, step=1e-3, helped_by={Help.MARGIN: {"margin": None}}),
         landing(
             replace(TUNED, reflection=True),

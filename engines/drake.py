@@ -214,7 +214,6 @@ class DrakeWorld(Adapter):
         return block
 
     def _begin(self, scene: Scene) -> None:
-        """Put the bodies where, and as fast, as they begin."""
         drake, begins = self._library, [body.at for body in scene.bodies]
         if self._s.planar:
             places = [q for at in begins for q in (at.z, at.x, at.theta)]
@@ -230,7 +229,6 @@ class DrakeWorld(Adapter):
             self.plant.SetFreeBodySpatialVelocity(self.context, block, velocity)
 
     def _new_integrator(self, scene: Scene) -> Any:
-        """Return what takes the steps of a continuous plant."""
         # without an estimate of the error each step goes to where it is told
         told, simulator = self._s.accuracy is None, self.simulator
         longest = LONGEST * self._ordinary if told else self._ordinary

@@ -208,7 +208,6 @@ class NewtonWorld(Adapter):
     library = "warp"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
-        self._ordinary = dt_s
         self._masses = [body.mass for body in scene.bodies]
         self._library.config.log_level = self._library.LOG_ERROR
         with silence():

@@ -98,7 +98,7 @@ class Adapter:
     _read_back: Any
     _script: Any
     bodies: list[Any]
-    called: str
+    called = ""  # what a script calls the library, where that is not its own name
     without: tuple[str, ...] = ()
 
     def __init__(self, scene: Scene, settings: Any, dt_s: float, library: Any = None) -> None:
@@ -123,7 +123,7 @@ class Adapter:
         """Return a scene as calls of the library; see `engines.run.export`."""
         notes, own = Notes(cls.without), cls.library
         library = own() if callable(own) else imported(own)
-        made = cls(scene, settings, dt_s, notes.of(library, cls.called))
+        made = cls(scene, settings, dt_s, notes.of(library, cls.called or own))
         notes.name_bodies(made.bodies)
         said: Script = made._script(notes, made._way)
         return said

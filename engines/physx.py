@@ -73,7 +73,6 @@ class PhysxWorld(Adapter):
     """Bodies on a kinematic box, whether that moves or not."""
 
     library = "sapien"
-    called = "sapien"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         settings = self._s
@@ -390,11 +389,7 @@ ENGINE = Engine(
             sleeping=False,
         ),
         Preset(name="tuned", settings=TUNED, step=1e-3),
-        landing(
-            LANDING,
-            {Help.REFLECTION: {"reflection": False}},
-            stacked=None,
-        ),
+        landing(LANDING, {Help.REFLECTION: {"reflection": False}}, stacked=None),
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,

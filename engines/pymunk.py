@@ -55,7 +55,6 @@ class PymunkWorld(Adapter):
     """Bodies on one that does not move by itself, in a `pymunk.Space`."""
 
     library = "pymunk"
-    called = "pymunk"
 
     def _build(self, scene: Scene, dt_s: float) -> None:
         settings, self._unit = self._s, self._s.unit

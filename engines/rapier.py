@@ -293,6 +293,8 @@ TUNED = RapierSettings(
     floor="both",
 )
 
+LANDING = replace(TUNED, reflection=True)
+
 RECYCLED = "a contact of an earlier step: the block slides off its pivot"
 FRICTIONLESS = "a contact whose body cannot move aside has no friction at all"
 WITHOUT_NORMAL = "a ball whose centre rounds onto a surface has no contact there for a step"
@@ -402,11 +404,7 @@ ENGINE = Engine(
             sleeping=False,
         ),
         Preset(name="tuned", settings=TUNED, step=5e-4),
-        landing(
-            replace(TUNED, reflection=True),
-            {Help.REFLECTION: {"reflection": False}},
-            stacked=None,
-        ),
+        landing(LANDING, {Help.REFLECTION: {"reflection": False}}, stacked=None),
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,

@@ -11,7 +11,7 @@ from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 
 from engines.declaration import Builder, Engine, Preset, landing
-from engines.settings import Settings, one_of, setting
+from engines.settings import Settings, setting
 
 FURTHER = "ROCKING_ENGINES"
 """Environment variable: engines that no package announces, as "name=module:ENGINE name=..."."""
@@ -19,13 +19,8 @@ FURTHER = "ROCKING_ENGINES"
 GROUP = "rocking.engines"
 """Entry points of other packages in this group are engines: name -> "module:ENGINE"."""
 
-OWN = {
-    name: f"engines.{name}:ENGINE"
-    for name in (
-        *("pybullet", "mujoco", "pymunk", "box2d", "dart"),
-        *("rapier", "drake", "newton", "physx"),
-    )
-}
+NAMES = ("pybullet", "mujoco", "pymunk", "box2d", "dart", "rapier", "drake", "newton", "physx")
+OWN = {name: f"engines.{name}:ENGINE" for name in NAMES}
 """Name of an engine -> where its declaration stands."""
 
 
@@ -141,14 +136,6 @@ def installed_engines() -> tuple[str, ...]:
     True
     """
     return tuple(name for name, engine in ENGINES.items() if engine.installed)
-
-
-def find(name: str | Engine) -> Engine:
-    """Return an engine by its name, or as it is given; ValueError if there is none."""
-    if isinstance(name, Engine):
-        return name
-    one_of("engine", name, ENGINES)
-    return ENGINES[name]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

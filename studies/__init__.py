@@ -1,4 +1,7 @@
-"""The questions asked of the reference and the engines: one file a study, or a folder."""
+"""The questions asked of the reference and the engines: one file a study, or a folder.
+
+What is unknown or out of range is refused by a ValueError that says what is allowed.
+"""
 # `cases` has a case, `sources` answers, `kit` runs both and keeps the rows in a folder, `measures`
 # compares an answer with the exact one, `drawing` draws it, `page` shows all.
 
@@ -52,11 +55,6 @@ def respond(
         Keep a history without naming times: 1001 over the duration, by default the motion and 8/p.
     **options
         Passed on to the source: `step` of the solvers, any setting of an engine's `Scene`.
-
-    Raises
-    ------
-    ValueError
-        If there is no such source, preset or option, or a value is not allowed.
 
     Examples
     --------
@@ -167,11 +165,6 @@ def side_by_side(
     DataFrame
         A row for each source, with the columns of ``rocking compare --json``; the peak is inf where
         the block overturns, and what there is not is nan.
-
-    Raises
-    ------
-    ValueError
-        If there is no such source, or a value is not allowed.
 
     Examples
     --------

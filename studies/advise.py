@@ -15,9 +15,7 @@ from typing import Annotated, Any, TypeAlias, cast
 import pandas as pd
 from cyclopts import Parameter
 
-from analytic import conditioning, sensitivity, simulate
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
+from analytic import RigidBlock, SinePulse, conditioning, sensitivity, simulate
 from engines import ENGINES
 from engines.declaration import AT_REST, PASTED
 from engines.factors import DEFAULT
@@ -25,7 +23,6 @@ from engines.registry import OWN
 from engines.run.run import YAW
 from studies.cases.drawn import Kind, free_boxes
 from studies.kit import arguments
-from studies.kit.arguments import Running
 from studies.kit.jobs import Job, Question, Row, ask, summary
 from studies.kit.say import aligned, as_text, duration, out_of, part
 from studies.kit.scene_options import Height, Width, block_of
@@ -36,7 +33,6 @@ from studies.measures import published as known
 from studies.measures.costs import cheapest_kept
 from studies.measures.differences import WELL_CONDITIONED, beside, sensitivity_of
 from studies.measures.presets import pasted_of
-from studies.measures.published import PUBLISHED
 from studies.measures.wrongness import KINDS, counted, in_kinds, wrong_in
 from studies.sources.registry import scene_of
 
@@ -71,7 +67,7 @@ def command(
     error: Annotated[tuple[arguments.Positive, ...], arguments.several_or_none] = (),
     out: arguments.Place | None = None,
     quick: bool = False,
-    running: Running = Running(),  # noqa: B008
+    running: arguments.Running = arguments.Running(),  # noqa: B008
 ) -> int:
     """Print the lines with which a free box on a floor at rest rocks accurately, and their errors.
 
@@ -102,18 +98,18 @@ def command(
     block = block_of(width, height)
     if error:
         arguments.refuse_repeats("--error", error)
-        check(PUBLISHED, (known.LADDER, *known.PAPER), "the published tables")
-        found = cheapest(PUBLISHED, asked, error, block)
+        check(known.PUBLISHED, (known.LADDER, *known.PAPER), "the published tables")
+        found = cheapest(known.PUBLISHED, asked, error, block)
         title = "The cheapest setting that keeps each error, with every finer step (value: p dt, or"
         print(as_text("", {f"{title}\nan accuracy; dt_s for your block)": found}).strip())
         return 0
-    check(PUBLISHED, NEEDED, "the published tables")
+    check(known.PUBLISHED, NEEDED, "the published tables")
     if len(asked) == 1:
         own = ENGINES[asked[0]].preset(AT_REST).step_s
         with arguments.as_bad_input():
             print(*screen(asked[0], block, dt or own, friction), sep="\n")
         return 0
-    advice = table_in(PUBLISHED / "advice", ADVICE)
+    advice = table_in(known.PUBLISHED / "advice", ADVICE)
     mine = {ADVICE: advice[advice["engine"].isin(asked)]}
     print(as_text(finding(mine), shown(mine)))
     print("\nWith one --engine: the lines to paste, in the library's words.")
@@ -284,7 +280,7 @@ def pasted_lines(engine: str, block: RigidBlock, dt_s: float, friction: float) -
 def screen(engine: str, block: RigidBlock, dt_s: float, friction: float) -> list[str]:
     """Return a screen about an engine: lines to paste, their worth, where they fail, sources."""
     use = ENGINES[engine].preset(pasted_of(engine))
-    advice = table_in(PUBLISHED / "advice", ADVICE)
+    advice = table_in(known.PUBLISHED / "advice", ADVICE)
     advice = advice[advice["engine"] == engine]
     below = ["No published table says what that is worth."]
     if len(advice):
@@ -292,7 +288,7 @@ def screen(engine: str, block: RigidBlock, dt_s: float, friction: float) -> list
         below = [f"{boxes}; errors of the {advice['survivors'].max()} survivors with S < 10:"]
         below += worth(advice).splitlines()
         below += _filled("NOT ADVISED", unadvised(advice).get(engine, ""))
-        kinds = table_in(PUBLISHED / "advice", BY_KIND)
+        kinds = table_in(known.PUBLISHED / "advice", BY_KIND)
         below += _filled("Fails", fails(kinds[kinds["engine"] == engine]))
     sources = [f"{it.setting}: {it.value} ({it.where})" for it in use.documented]
     below += _filled("Sources", "; ".join(sources) or "measured here, `rocking contact`")
@@ -348,7 +344,7 @@ def fails(kinds: pd.DataFrame) -> str:
 
 def moving(engine: str) -> str:
     """Say by how much the defaults err on a floor that moves, and on one at rest."""
-    table = table_in(PUBLISHED / "presets", "summary")
+    table = table_in(known.PUBLISHED / "presets", "summary")
     table = table[table["figure"] == "all"].set_index("source")
     names = [f"{engine}:{preset}" for preset in (DEFAULT, AT_REST)]
     if not set(names) <= set(table.index):

@@ -6,9 +6,8 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from analytic import Outcome, SlidingBlock
 from analytic.motion import BothWays
-from analytic.response import Outcome
-from analytic.slide import SlidingBlock
 from studies.cases.refusal import BadInputError
 from studies.kit.arguments import Computing, Place, Sources, Yours, check_file
 from studies.kit.jobs import Job, Question, Row

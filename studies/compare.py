@@ -10,17 +10,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analytic import RigidBlock
-from analytic.frame import RockingFrame
+from analytic import Outcome, Record, Response, RigidBlock, RockingFrame, SlidingBlock
 from analytic.motion import BothWays, Motion, SinePulse, Still
-from analytic.record import Record
-from analytic.response import Outcome, Response
-from analytic.slide import SlidingBlock
 from analytic.start import strongest
 from engines.scene import System
 from studies.cases.paper import PULSES
 from studies.kit import arguments
-from studies.kit.arguments import Computing, EffortOptions, Yours
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.run import Place, exit_code, here, place_of, run, with_response
 from studies.kit.say import aligned, duration, number
@@ -46,12 +41,12 @@ def command(
     standing: Standing = Standing(),  # noqa: B008
     sources: arguments.Sources = DEFAULT_SOURCES,
     duration: arguments.Positive | None = None,
-    effort: EffortOptions = EffortOptions(),  # noqa: B008
-    yours: Yours = Yours(),  # noqa: B008
+    effort: arguments.EffortOptions = arguments.EffortOptions(),  # noqa: B008
+    yours: arguments.Yours = arguments.Yours(),  # noqa: B008
     estimate: bool = False,
     plot: arguments.Place | None = None,
     json: bool = False,
-    computing: Computing = Computing(),  # noqa: B008
+    computing: arguments.Computing = arguments.Computing(),  # noqa: B008
 ) -> int:
     """Compare sources on one block and one pulse or record.
 
@@ -217,8 +212,8 @@ def _slips(slips: Sequence[float]) -> str:
 def compare(
     case: Question,
     sources: Sequence[str],
-    yours: Yours,
-    effort: EffortOptions,
+    yours: arguments.Yours,
+    effort: arguments.EffortOptions,
     *,
     place: Place = here,
     estimate: bool = False,
@@ -240,7 +235,7 @@ def compare(
     for name, row in rows.items():
         row |= {**_beside(row["response"], exact, case.system.p), **known, "exact": exact}
         if estimate:
-            own_steps = effort == EffortOptions() and yours.dt is None
+            own_steps = effort == arguments.EffortOptions() and yours.dt is None
             row |= _estimated(row, halves.get(name), case.system, own_steps)
     if yours.friction is not None and yours.friction < exact.friction_needed:
         slides = f"slides: needs {exact.friction_needed:.3g}, has {yours.friction:.3g}"

@@ -14,12 +14,9 @@ from engines import ENGINES, installed_engines
 from engines.declaration import Precision
 from engines.run.look import PACKAGE
 from studies.cases.paper import HISTORIES
-from studies.kit.arguments import TimeLimit
-from studies.kit.identity import COMPUTING, version_of
+from studies.kit import arguments, identity, run, store
 from studies.kit.jobs import Job, Question, Row, answer
-from studies.kit.run import local
 from studies.kit.say import part
-from studies.kit.store import project_version, usable_cores
 from studies.sources.registry import Source
 
 CASE = HISTORIES[5][1]
@@ -30,7 +27,7 @@ LEAST_BYTES = 5e8
 """Free space that the results of most studies fit into."""
 
 
-def command(*, time_limit: TimeLimit = 600.0) -> int:
+def command(*, time_limit: arguments.TimeLimit = 600.0) -> int:
     """Check this installation, in ten lines to paste into a report.
 
     It prints versions, the cache of compiled functions, cores and disk, and simulates one block in
@@ -52,21 +49,22 @@ def command(*, time_limit: TimeLimit = 600.0) -> int:
 def surroundings() -> Iterator[tuple[str, str]]:
     """Yield versions, folder, cores and disk, each with what to do where it does not suffice."""
     python = f"Python {platform.python_version()}, {platform.platform()}"
-    yield f"rocking {project_version()}, {python}", ""
-    yield ", ".join(f"{name} {version_of(name)}" for name in COMPUTING), ""
+    yield f"rocking {store.project_version()}, {python}", ""
+    yield ", ".join(f"{name} {identity.version_of(name)}" for name in identity.COMPUTING), ""
     places = [kept_in(sources) for sources in (SOURCES, PACKAGE)]
     remedy = "set NUMBA_CACHE_DIR to a folder that can be written" if None in places else ""
     yield f"compiled functions are kept in {places[0] or 'no folder'}", remedy
     free = shutil.disk_usage(Path.cwd()).free
     remedy = "" if free >= LEAST_BYTES else "free some, or write elsewhere with --out"
-    yield f"{usable_cores()} of {os.cpu_count()} cores, {1e-9 * free:.1f} GB free here", remedy
+    cores = f"{store.usable_cores()} of {os.cpu_count()} cores"
+    yield f"{cores}, {1e-9 * free:.1f} GB free here", remedy
 
 
 def engines(time_limit_s: float) -> Iterator[tuple[str, str]]:
     """Ask every engine that is here about one block, and name those that are not."""
     case, here = Question(system=CASE.block, motion=CASE.motion), installed_engines()
     jobs = [Job(labels={}, case=case, source=name) for name in here]
-    rows = local(jobs, answer, usable_cores(), time_limit_s, at_once=True)
+    rows = run.local(jobs, answer, store.usable_cores(), time_limit_s, at_once=True)
     yield from (compare(jobs[number].asked, row) for number, row in rows)
     if absent := sorted(ENGINES.keys() - here):
         names = [f"{name} (pip install '{ENGINES[name].install}')" for name in absent]
@@ -77,7 +75,7 @@ def compare(source: Source, row: Row) -> tuple[str, str]:
     """Compare an engine's row with the exact solution, and with what it should keep."""
     engine, exact = source.declared, simulate(CASE.block, CASE.motion)
     keeps = LANDING if source.lands and engine.precision is Precision.DOUBLE else OTHER
-    versions = ", ".join(f"{name} {version_of(name)}" for name in engine.packages)
+    versions = ", ".join(f"{name} {identity.version_of(name)}" for name in engine.packages)
     asked = f"{engine.name}:{source.preset}{versions and f' ({versions})'}"
     error = abs(row["peak_ratio"] / exact.peak_ratio - 1.0)
     if row["outcome"] == exact.outcome.value and error <= keeps:

@@ -10,19 +10,14 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from analytic import Outcome, RigidBlock, RockingFrame, SlidingBlock
 from engines import ENGINES
 from engines.declaration import Stepping, Use
-from engines.run import ground
-from engines.run.slide import LEAST_SLIP, SLIP_RATE
-from engines.run.steps import begin_of
+from engines.run import ground, slide, steps
 from engines.settings import perhaps
 from studies.cases.refusal import BadInputError
+from studies.kit import identity, say, store, tables
 from studies.kit.arguments import Computing, Place, Step, TimeLimit, Yours, refuse_both
-from studies.kit.identity import version_of
 from studies.kit.jobs import Job, Question
 from studies.kit.run import exit_code, place_of, run, with_response
-from studies.kit.say import listed
 from studies.kit.scene_options import Excitation, Height, Standing, Width, window_of
-from studies.kit.store import project_version
-from studies.kit.tables import draft
 from studies.sources.registry import scene_of
 
 TITLES = {RigidBlock: "rocking block", RockingFrame: "rocking frame", SlidingBlock: "sliding block"}
@@ -69,24 +64,22 @@ def command(
     scene = scene_of(system, motion, preset, start=start, duration=window, **options)
     questions = {"exact": {}, source: options}
     jobs = [Job(labels={}, case=case, source=each, options=of) for each, of in questions.items()]
-    rows = run(
-        jobs, with_response, place_of(Computing(jobs=1, time_limit=time_limit), at_once=True)
-    )
+    place = place_of(Computing(jobs=1, time_limit=time_limit), at_once=True)
+    rows = run(jobs, with_response, place)
     if code := exit_code(rows):
         return code
     answers = [row["response"] for row in rows]
     slides = isinstance(system, SlidingBlock)
     exact, found = (each.slips if slides else each.peak_ratio for each in answers)
     if answers[-1].outcome is Outcome.AT_REST:
-        raise BadInputError(
-            f"--engine is {engine!r}; an exported scene must move there, and stays at rest"
-        )
+        words = "an exported scene must move there, and stays at rest"
+        raise BadInputError(f"--engine is {engine!r}; {words}")
     use = ENGINES[name].use(scene)
     texts = files(use, found, exact)
     out.mkdir(parents=True, exist_ok=True)
     with ExitStack() as places:  # the script takes its place when all others have theirs
         for file, text in texts.items():
-            places.enter_context(draft(out / file)).write_bytes(text.encode())
+            places.enter_context(tables.draft(out / file)).write_bytes(text.encode())
     print(*(out / file for file in texts), sep="\n")
     if isinstance(found, tuple):
         slips = (" ".join(f"{slip:.12g}" for slip in each) for each in (found, exact))
@@ -126,12 +119,12 @@ def files(use: Use, expected: Any, exact: Any) -> dict[str, str]:
         script=script,
         expected=expected,
         exact=exact,
-        version=project_version(),
-        packages={name: version_of(name) for name in use.engine.packages},
-        listed=listed,
-        begin=begin_of(scene, use.dt_s),
-        slow=SLIP_RATE * math.sqrt(scene.system.gravity * scene.system.width),
-        short=LEAST_SLIP * scene.system.width,
+        version=store.project_version(),
+        packages={name: identity.version_of(name) for name in use.engine.packages},
+        listed=say.listed,
+        begin=steps.begin_of(scene, use.dt_s),
+        slow=slide.SLIP_RATE * math.sqrt(scene.system.gravity * scene.system.width),
+        short=slide.LEAST_SLIP * scene.system.width,
     )
     shaking = inspect.getsource(ground) + segments("SEGMENTS", scene.shaking, "mean_velocity")
     if scene.heaves:

@@ -8,10 +8,8 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from analytic import peak_ratios
-from analytic.block import RigidBlock
+from analytic import RigidBlock, SinePulse, peak_ratios
 from analytic.models import Model
-from analytic.motion import SinePulse
 from studies.cases.paper import PULSES, sweep_cases
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import out_of, part

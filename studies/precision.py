@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analytic import RigidBlock, simulate
-from analytic.response import Outcome, Response
+from analytic import Outcome, Response, RigidBlock, simulate
 from engines import ENGINES
 from engines.declaration import Engine
 from engines.scene import free_rocking_window

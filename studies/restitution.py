@@ -13,8 +13,7 @@ from typing import cast
 
 import pandas as pd
 
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
+from analytic import RigidBlock, SinePulse
 from engines import ENGINES, installed_engines
 from engines.run.run import build
 from engines.world import ContactPhase, Pose, Step

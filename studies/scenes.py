@@ -12,10 +12,8 @@ from typing import Any, cast
 import numpy as np
 import pandas as pd
 
-from analytic import Delayed, Record, SinePulse, SlidingBlock
-from analytic.block import GRAVITY
+from analytic import GRAVITY, Delayed, Record, SinePulse, SlidingBlock, simulate
 from analytic.response import Outcome, Reason, Response
-from analytic.simulate import simulate
 from engines.factors import DEFAULT
 from engines.run.run import LAG
 from studies.cases.drawn import calm_frames, slides
@@ -35,8 +33,7 @@ SEEN = {
     "slide": ("place_m", "lift_m", "flat_m", "turn_rad"),
     "floor": (LAG,),
 }
-"""What an engine shows of a scene besides."""
-TABLES = ("frame", "slide", "floor")
+"""Scene, of a table of its own -> what an engine shows of it besides."""
 INSTEAD = r"^as (\w+:[\w-]+)"
 """How a message begins where a preset stands in for one that a scene does not allow."""
 RIGHT, MISSED, THROWN_OFF = "right", "missed slip", "thrown off"
@@ -160,7 +157,7 @@ def _slip_error(response: Response, exact: Response) -> float:
 def tabulate(rows: Tables) -> Tables:
     """Return the rows of each scene, and a line for each source that is built for it."""
     tables = {}
-    for name in TABLES:
+    for name in SEEN:
         tables[name] = mine = rows.get(name, pd.DataFrame())
         tables[f"{name}-summary"] = summed(mine, name)
     return tables

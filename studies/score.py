@@ -19,18 +19,14 @@ from engines.settings import perhaps
 from studies import precision, scenes, stability, sweep
 from studies.cases.refusal import BadInputError
 from studies.kit import arguments
-from studies.kit.arguments import Out, Place, Running
 from studies.kit.jobs import Job, Question, Row, answer, unanswered
 from studies.kit.run import makers_of, place_of, run
 from studies.kit.say import duration, in_columns, one_line, out_of, part, say
 from studies.kit.store import FolderError, Store, check, engines_of, provenance_of
 from studies.kit.study import Figures, Study, Tables, stages
 from studies.kit.tables import table_in
-from studies.measures import world
-from studies.measures.costs import joint
-from studies.measures.differences import summarize, with_reference
+from studies.measures import costs, differences, published, world
 from studies.measures.presets import engine_of, preset_of
-from studies.measures.published import PUBLISHED
 from studies.sources.registry import announce, presets_of, resolve
 
 MODEL, SWEEP, STEPS, EXTREMES = "score-model", "score-sweep", "score-steps", "score-extremes"
@@ -116,7 +112,7 @@ def tabulate(rows: Tables) -> Tables:
 
 def swept(tables: Tables) -> pd.DataFrame:
     """Return the lines of all figures together, one for each preset."""
-    return summarize(with_reference(tables[SWEEP]).assign(figure="all"))
+    return differences.summarize(differences.with_reference(tables[SWEEP]).assign(figure="all"))
 
 
 def along_step(tables: Tables) -> dict[str, pd.Series[float]]:
@@ -195,7 +191,7 @@ def shown(tables: Tables) -> Tables:
         "The paper's cases; errors of the peak are relative, over those that survive": (
             swept(tables).drop(columns=["figure", "max_difference"])
         ),
-        "Along the step, on typical cases and near overturning together": joint(along),
+        "Along the step, on typical cases and near overturning together": costs.joint(along),
         "Verdicts on extreme cases": stability.verdicts(extremes),
         "Failures in extreme cases": stability.failures(extremes)[stability.FAILURE],
         **{
@@ -215,7 +211,7 @@ def figures(tables: Tables) -> Figures:
     asked = (stability.scores(tables[EXTREMES], each) for each in ("engine", "case"))
     drawn = {"extremes": draw_scores("Extreme cases", *asked)}
     if (along["wall_s"] > 0.0).any():
-        others = table_in(PUBLISHED / "precision", "work-precision")
+        others = table_in(published.PUBLISHED / "precision", "work-precision")
         drawn["score"] = draw_precision(along, others)
     return drawn
 
@@ -234,10 +230,10 @@ def command(
     engine: Annotated[str, Parameter(name="ENGINE")],
     /,
     *,
-    out: Out = Path("score"),
+    out: arguments.Out = Path("score"),
     quick: bool = False,
-    against: Place | None = None,
-    running: Running = Running(),  # noqa: B008
+    against: arguments.Place | None = None,
+    running: arguments.Running = arguments.Running(),  # noqa: B008
 ) -> int:
     """Score one engine: the paper's cases, errors along the step, extreme cases, slides and frames.
 
@@ -274,7 +270,7 @@ def command(
     return 0
 
 
-def check_model(engine: str, asked: Sequence[Job], running: Running) -> None:
+def check_model(engine: str, asked: Sequence[Job], running: arguments.Running) -> None:
     """Print the model check to stderr; refuse an engine of which no case can be right."""
     rows = run(asked, measure, place_of(running, at_once=True))
     for row in rows:

@@ -10,8 +10,7 @@ import pandas as pd
 
 from engines.factors import BEST
 from studies.cases.paper import sweep_cases
-from studies.kit.arguments import EffortOptions
-from studies.kit.arguments import figures as some_figures
+from studies.kit import arguments
 from studies.kit.jobs import Job, Question
 from studies.kit.say import capital, listed, out_of, part
 from studies.kit.study import Figures, Study, Tables, claim, stages
@@ -24,10 +23,10 @@ WHICH = "Figures of the paper: 6, 7 (half-sine), 8, 9 (full-sine); all by defaul
 
 
 @dataclass(frozen=True, kw_only=True)
-class Options(EffortOptions):
+class Options(arguments.EffortOptions):
     """Which figures, and how finely the sources step."""
 
-    figure: Annotated[tuple[int, ...], some_figures(WHICH, 6, 7, 8, 9)] = (6, 7, 8, 9)
+    figure: Annotated[tuple[int, ...], arguments.figures(WHICH, 6, 7, 8, 9)] = (6, 7, 8, 9)
 
 
 MOST_DRAWN = 15

@@ -11,8 +11,7 @@ from typing import Annotated
 import numpy as np
 import pandas as pd
 
-from analytic import simulate
-from analytic.response import Outcome
+from analytic import Outcome, simulate
 from engines.declaration import AT_REST
 from studies.cases.drawn import Drawn, RandomCase, draw
 from studies.cases.refusal import BadInputError
@@ -20,10 +19,11 @@ from studies.kit.arguments import Count, EffortOptions, one_of
 from studies.kit.jobs import Job, Question, Row
 from studies.kit.say import out_of, part
 from studies.kit.study import Figures, Study, Tables, stages
+from studies.measures import differences
 from studies.measures.differences import WELL_CONDITIONED, sensitivity_of, with_reference
 from studies.measures.halving import BOUNDED, MOST_TRUSTED, USES, estimate_of, factors, halved
 from studies.measures.presets import titled
-from studies.measures.wrongness import counted, wrong_in
+from studies.measures.wrongness import KINDS
 from studies.sources.registry import core_sources
 
 CASES, TESTS = {False: (500, 100), True: (300, 20)}, (100, 10)
@@ -133,23 +133,16 @@ def shown(tables: Tables) -> Tables:
         return {"Estimates, errors, and the factors between them": tables["factors"]}
     errors, s = tables["errors"], sensitivity_of(tables["errors"])
     calm = f" where a peak moves by S < {WELL_CONDITIONED:g} % for 1 % of pulse or impacts"
-    found = {"": quantiles(errors), calm: quantiles(errors[s < WELL_CONDITIONED])}
-    return {f"Outcomes{cases}": lines.iloc[:, :6] for cases, lines in found.items()} | {
-        f"Errors{cases}, differences over θcr": lines.drop(columns=[*lines][1:6])
+    every = errors.assign(figure="all")
+    groups = {"": every, calm: every[s < WELL_CONDITIONED]}
+    found = {cases: differences.summarize(rows) for cases, rows in groups.items()}
+    sizes = ["median_error", "p90_error", "max_error", "median_difference", "max_difference"]
+    parts = {"Outcomes{}": ["cases", "agree", *KINDS], "Errors{}, differences over θcr": sizes}
+    return {
+        title.format(cases): lines.reindex(columns=["source", *names])
+        for title, names in parts.items()
         for cases, lines in found.items()
     }
-
-
-def quantiles(errors: pd.DataFrame) -> pd.DataFrame:
-    """Return a line for each source: outcomes right and wrong, and quantiles of the error."""
-    levels, lines = {"median": 0.5, "p90": 0.9, "max": 1.0}, []
-    for source, rows in errors.groupby("source", sort=False):
-        size, kinds = rows["error"].abs(), counted(wrong_in(rows))
-        line = {"source": source, "cases": len(rows), "agree": rows["agrees"].sum(), **kinds}
-        line |= {f"{word}_error": size.quantile(level) for word, level in levels.items()}
-        share = size * rows["exact_peak"]
-        lines.append(line | {"median_difference": share.median(), "max_difference": share.max()})
-    return pd.DataFrame(lines)
 
 
 def figures(tables: Tables) -> Figures:

@@ -5,7 +5,6 @@ from enum import Enum
 import pytest
 
 from engines import ENGINES
-from engines.registry import find
 from engines.run.run import run as run_use
 from engines.world import ROUNDINGS
 
@@ -44,7 +43,8 @@ was changed a little: the radius of its corners, the steps over which it correct
 
 def run(engine, scene):
     """Return what an engine, by its name or declaration, makes of a scene."""
-    return run_use(find(engine).use(scene))
+    declared = ENGINES[engine] if isinstance(engine, str) else engine
+    return run_use(declared.use(scene))
 
 
 def held_to(miss, engine, preset):

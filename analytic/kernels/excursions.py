@@ -37,23 +37,8 @@ from analytic.kernels.polynomial import (
     trend,
     value,
 )
-from analytic.kernels.rest import (
-    acceleration,
-    after_impact,
-    ground,
-    next_uplift,
-    safe_time,
-    segment_at,
-    weight,
-)
-from analytic.kernels.taylor import (
-    Accuracy,
-    expand_exact,
-    expand_forcing,
-    expand_linear,
-    expand_weight,
-    trusted_step,
-)
+from analytic.kernels.rest import after_impact, ground, next_uplift, safe_time, segment_at, weight
+from analytic.kernels.taylor import Accuracy, expand
 
 AT_REST, ROCKED, OVERTURNED, TOO_LONG, BROKEN = 0, 1, 2, 3, 4
 FREE, HIT, FALLEN, LOST = 0, 1, 2, 3
@@ -69,8 +54,6 @@ a root much closer to the step's begin than its end could be overlooked."""
 NEAR = 1e-7
 """Part of the time gone at which an impact ahead is left to Newton's method."""
 MOST_LEAPS = 10_000
-LINEAR_STEP = 2.5
-"""Linear step in units of the shortest time scale; its series is exact to 1e-16."""
 
 
 Ended: TypeAlias = tuple[int, float, float, int, int, int, float, float, float]
@@ -102,22 +85,6 @@ class Step(NamedTuple):
     y: float
     v: float
     peak: float
-
-
-def expand(
-    law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, work: FloatArray
-) -> float:
-    """Fill work[0] with the series of y from a state; return the step [1/p] it allows."""
-    y, f = work[0], work[1]
-    y[0], y[1] = begin.y, begin.v
-    expand_forcing(segment, begin.tau, begin.side, accuracy.order, f)
-    expand_weight(segment, begin.tau, accuracy.order, work[-1])
-    y[2] = 0.5 * acceleration(law, 1.0, f[0], y[0], work[-1][0]) if begin.lead < 3 else 0.0
-    if law.linear:
-        expand_linear(law, accuracy.order, f, y)
-        return LINEAR_STEP / max(law.k, segment[3])
-    expand_exact(law, accuracy.order, work, len(segment) > 7)
-    return trusted_step(y, accuracy)
 
 
 def first_crossing(d: FloatArray, order: int, lead: int, level: float, work: FloatArray) -> float:

@@ -7,12 +7,15 @@ Symbols and units are those of `analytic.kernels.law`; the method and its error 
 import math
 from typing import NamedTuple
 
-from analytic.kernels.law import FloatArray, Law
+from analytic.kernels.law import FloatArray, Law, State
 from analytic.kernels.polynomial import ORDER
+from analytic.kernels.rest import acceleration
 
 LEAST_ORDER = 6
 LONGEST_STEP = 4.0
 """In units of 1/p."""
+LINEAR_STEP = 2.5
+"""Linear step in units of the shortest time scale; its series is exact to 1e-16."""
 
 TOLERANCE = 1e-16
 """Default truncation error of a step, relative to the rotation it covers."""
@@ -105,3 +108,19 @@ def trusted_step(y: FloatArray, accuracy: Accuracy) -> float:
         size = logarithm(max(max(abs(y[0]), abs(y[1]) * h), max(abs(y[2]), abs(y[3]) * h) * h * h))
         h = min(LONGEST_STEP, math.exp(min((size - last) / order, (size - before) / (order - 1))))
     return h
+
+
+def expand(
+    law: Law, accuracy: Accuracy, segment: FloatArray, begin: State, work: FloatArray
+) -> float:
+    """Fill work[0] with the series of y from a state; return the step [1/p] it allows."""
+    y, f = work[0], work[1]
+    y[0], y[1] = begin.y, begin.v
+    expand_forcing(segment, begin.tau, begin.side, accuracy.order, f)
+    expand_weight(segment, begin.tau, accuracy.order, work[-1])
+    y[2] = 0.5 * acceleration(law, 1.0, f[0], y[0], work[-1][0]) if begin.lead < 3 else 0.0
+    if law.linear:
+        expand_linear(law, accuracy.order, f, y)
+        return LINEAR_STEP / max(law.k, segment[3])
+    expand_exact(law, accuracy.order, work, len(segment) > 7)
+    return trusted_step(y, accuracy)

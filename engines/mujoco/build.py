@@ -11,17 +11,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from engines.mujoco.contact import (
-    MOST_GROWTH,
-    RELEASED_GROWTH,
-    Arrays,
-    ContactState,
-    Forces,
-    direct,
-    notice,
-    prepare,
-    read,
-)
+from engines.mujoco import contact
 from engines.parts import yaw_of
 from engines.run.look import compiled, records
 from engines.scene import BASE, Scene
@@ -170,8 +160,8 @@ def model_xml(scene: Scene, s: MujocoSettings, dt_s: float) -> str:
         defaults = f"<default><geom {own}/></default>"
     elif s.impedance is not None:
         if s.damping is not None:
-            by = s.impedance[1], dt_s, s.stiffness or 0.0
-            normal, along = direct(*by, s.damping), direct(*by, s.sliding_damping or 0.0)
+            by, both = (s.impedance[1], dt_s, s.stiffness or 0.0), (s.damping, s.sliding_damping)
+            normal, along = (contact.direct(*by, damping or 0.0) for damping in both)
             reference = f'solref="{_row(normal)}" solreffriction="{_row(along)}"'
         friction = _row((s.friction, s.friction, 0.005, 0.0001, 0.0001))
         held = f'friction="{friction}" margin="{margin}" solimp="{_row(s.solimp(scene, dt_s))}"'
@@ -277,7 +267,6 @@ class MujocoWorld:
         self._mj.set_mju_user_warning(lambda message: None)
 
     def _set_out(self) -> None:
-        """Let the bodies set out from where the scene begins."""
         places: list[float] = []
         velocities: list[float] = []
         for body in self._scene.bodies:
@@ -295,10 +284,11 @@ class MujocoWorld:
     def step(self, step: Step) -> None:
         """Advance by a step."""
         data, held, arrays = self._data, self.held, self.arrays
-        prepare(held, arrays, step)
+        contact.prepare(held, arrays, step)
         self.model.opt.timestep = step.dt_s
         self._mj.mj_step(self.model, data)
-        notice(held, arrays, Forces(data.ncon, data.nefc, data.efc_R, data.efc_force), step)
+        forces = contact.Forces(data.ncon, data.nefc, data.efc_R, data.efc_force)
+        contact.notice(held, arrays, forces, step)
 
     @property
     def base_x_m(self) -> float:
@@ -317,7 +307,7 @@ class MujocoWorld:
 
     def state(self) -> FloatArray:
         """Read the bodies' poses back."""
-        read(self.held, self.arrays)
+        contact.read(self.held, self.arrays)
         return self.arrays.state
 
     def fault(self) -> str:
@@ -366,7 +356,7 @@ class MujocoWorld:
         kind = getattr(self._mj, f"mjt{name.capitalize()}")
         return int(kind.__members__[OPTIONS[name] + wanted.upper()]), int(found)
 
-    def _arrays_of(self) -> Arrays:
+    def _arrays_of(self) -> contact.Arrays:
         """Return the library's arrays, and what is known of each pair, in the library's order."""
         held, model, data, scene = self.held, self.model, self._data, self._scene
         rows, yields = [], (1.0 - held.impedance) * scene.system.gravity
@@ -376,7 +366,7 @@ class MujocoWorld:
                 row = (side, each.face * side, *each, weight, yields, 0.5 * yields)
                 rows += [row] * (1 if held.single else int(held.corners))
         homes = np.array([(*body.home, 0.5 * body.height) for body in scene.bodies])
-        return Arrays(
+        return contact.Arrays(
             data.qpos,
             data.qvel,
             model.opt.gravity,
@@ -391,12 +381,12 @@ class MujocoWorld:
         )
 
 
-def begin_contact(scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> ContactState:
+def begin_contact(scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> contact.ContactState:
     """Return what holds the bodies of a scene, of which so many pairs touch, in ordinary steps."""
     block, touching = scene.system, len(scene.layout.contacts)
     impedance = 1.0 if s.impedance is None else s.impedance[1]
     sliding = 1.0 if s.sliding_damping is None else s.sliding_damping
-    return ContactState(
+    return contact.ContactState(
         planar=s.planar,
         moving=scene.frame == "world",
         level=-scene.bodies[0].height,
@@ -420,8 +410,8 @@ def begin_contact(scene: Scene, s: MujocoSettings, dt_s: float, pairs: int) -> C
         corners=max(pairs // touching // 2, 1),
         ordinary_squared=dt_s**2,
         impedance_squared=impedance**2,
-        growth=1.0 + MOST_GROWTH * block.p * dt_s,
-        steady=1.0 + RELEASED_GROWTH * block.p * dt_s,
+        growth=1.0 + contact.MOST_GROWTH * block.p * dt_s,
+        steady=1.0 + contact.RELEASED_GROWTH * block.p * dt_s,
         released=bool(scene.side),
         rate=scene.bodies[0].at.rate,
     )

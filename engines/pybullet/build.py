@@ -191,7 +191,6 @@ class BulletWorld(Adapter):
         )
 
     def _made(self, number: int) -> Any:
-        """Make a body, of a shape of its own."""
         p, s, scene = self._p, self._s, self._scene
         body = scene.bodies[number]
         left = -body.offset  # the library has a body where its mass is

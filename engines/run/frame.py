@@ -6,16 +6,8 @@ See EQUATIONS.md, "The rocking frame".
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from engines.run.watch import (
-    BEAM_LOST,
-    BEAM_SLIPPED,
-    BEAM_THROWN,
-    PARTED,
-    PARTED_PART,
-    THROWN_WIDTHS,
-    Watch,
-    check_slide,
-)
+from engines.run import watch as seen
+from engines.run.watch import Watch, check_slide
 from engines.scene import Layout
 from engines.world import FloatArray
 
@@ -70,12 +62,12 @@ def see_spread(spread: Spread, watch: Watch, state: FloatArray) -> None:
 def come_apart(spread: Spread, watch: Watch, raised: float) -> None:
     """See whether the frame is one no longer, its beam so far above the columns' tops [m]."""
     width = 2.0 * watch.half_width
-    if spread.parting > PARTED_PART * watch.alpha:
-        watch.problem, watch.far = PARTED, spread.parting / watch.alpha
-    elif raised > THROWN_WIDTHS * width:
-        watch.problem, watch.far = BEAM_THROWN, raised
+    if spread.parting > seen.PARTED_PART * watch.alpha:
+        watch.problem, watch.far = seen.PARTED, spread.parting / watch.alpha
+    elif raised > seen.THROWN_WIDTHS * width:
+        watch.problem, watch.far = seen.BEAM_THROWN, raised
     else:
-        check_slide(watch, spread.slide, BEAM_SLIPPED, BEAM_LOST)
+        check_slide(watch, spread.slide, seen.BEAM_SLIPPED, seen.BEAM_LOST)
 
 
 def observables_of(spread: Spread, alpha: float) -> Mapping[str, float]:

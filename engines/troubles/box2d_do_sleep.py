@@ -5,11 +5,9 @@ The constructor stores doSleep as a Python attribute, allowSleeping, that the li
 Kind: sleeping
 """
 
-from importlib.metadata import version
-
 import Box2D
 
-print("Box2D", version("Box2D"))
+print("Box2D", Box2D.__version__)
 
 
 def awake(*, told):

@@ -6,12 +6,11 @@ Kind: friction model
 """
 
 import math
-from importlib.metadata import version
 
 import rapier3d as rapier
 
 G, MU, SLOPE, T, DT = 9.81, 0.5, 0.2, 1.0, 1 / 60
-print("rapier3d", version("rapier3d"))
+print("rapier3d", rapier.__version__)
 
 
 def slid(*, y_free):

@@ -10,9 +10,9 @@ from pathlib import Path
 from reprlib import repr as shown
 from typing import Literal
 
-from analytic.accelerograms import is_number, lines_of
 from analytic.block import RigidBlock
 from analytic.slide import SlidingBlock
+from analytic.text import is_number, lines_of
 from studies.cases.refusal import BadInputError
 from studies.kit.scene_options import MOST_M
 

@@ -10,9 +10,8 @@ from typing import Literal
 
 import numpy as np
 
-from analytic import RockingFrame, SlidingBlock, conditioning, frame_demands, simulate
+from analytic import Rocker, RockingFrame, SlidingBlock, conditioning, frame_demands, simulate
 from analytic.block import GRAVITY, RigidBlock
-from analytic.frame import Rocker
 from analytic.motion import Motion, SinePulse
 from analytic.record import Record
 from engines.scene import BEAM_DEPTH, SPACING

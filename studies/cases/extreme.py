@@ -6,10 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
-from analytic import simulate
-from analytic.block import GRAVITY, RigidBlock
-from analytic.motion import SinePulse
-from analytic.response import Outcome
+from analytic import GRAVITY, Outcome, RigidBlock, SinePulse, simulate
 from engines.declaration import AT_REST, RECOMMENDED
 from engines.scene import free_rocking_window
 from studies.sources.registry import resolve

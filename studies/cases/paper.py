@@ -8,9 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from analytic import peak_ratios
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
+from analytic import RigidBlock, SinePulse, peak_ratios
 
 PULSES = {"half-sine": 1, "full-sine": 2}
 """Half cycles of each pulse."""

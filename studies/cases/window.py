@@ -7,8 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.block import RigidBlock
-from analytic.maps import overturning_modes
+from analytic import RigidBlock, overturning_modes
 from analytic.motion import FloatArray, SinePulse
 from studies.cases.paper import PULSES
 

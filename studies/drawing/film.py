@@ -15,9 +15,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 from tqdm import tqdm
 
-from analytic.block import RigidBlock
+from analytic import Outcome, RigidBlock
 from analytic.motion import FloatArray, Motion
-from analytic.response import Outcome
 from engines.scene import System, layout_of
 from studies.drawing.styles import full_name, style_of
 from studies.kit.jobs import Row

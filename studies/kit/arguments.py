@@ -11,8 +11,8 @@ from typing import Annotated, Any, TypeVar, get_args
 
 from cyclopts import Parameter, Token
 
-from analytic.accelerograms import finite_number
 from analytic.slide import SlidingBlock
+from analytic.text import finite_number
 from engines import ENGINES
 from engines.scene import MOST_HALF_CYCLES, System
 from engines.settings import perhaps

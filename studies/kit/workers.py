@@ -8,7 +8,7 @@ import sys
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
@@ -55,16 +55,6 @@ def answers(
             worker.end()
 
 
-@contextmanager
-def deferring(*signals: int) -> Iterator[None]:
-    """Let signals wait."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
 class _Worker:
     """A process, seen from the one that gives it tasks."""
 
@@ -72,8 +62,12 @@ class _Worker:
         context = get_context("spawn")  # engines hold state of their own, which no fork may share
         self.channel, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs,))
-        with deferring(signal.SIGINT, signal.SIGHUP):  # what a terminal sends to all in it
+        # what a terminal sends to all in it waits meanwhile
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGHUP))
+        try:
             self.process.start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
         theirs.close()
         self.number, self.until = -1, 0.0
 

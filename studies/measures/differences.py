@@ -19,9 +19,6 @@ from studies.measures.wrongness import counted, wrong_in
 WELL_CONDITIONED = 10.0
 """Below this κ the error of a peak says more about its source than about the case."""
 
-OF_FRAMES = ("exact_outcome", "exact_peak", "agrees", "error", "kappa", "kappa_eta", "sensitivity")
-"""Columns that `with_reference` adds to rows of frames."""
-
 
 def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
     """Add the exact outcome and peak of every case, and the difference of each row from them."""
@@ -36,8 +33,7 @@ def with_reference(rows: pd.DataFrame) -> pd.DataFrame:
         exact_peak=peak[back],
         exact_outcome=[str(getattr(it, "value", it)) for it in outcome[back]],
     )
-    compared = beside(joined)
-    return compared[[*rows, *OF_FRAMES]] if "load" in rows else compared
+    return beside(joined)
 
 
 def beside(joined: pd.DataFrame) -> pd.DataFrame:
@@ -64,12 +60,9 @@ def posed_cases(cases: pd.DataFrame) -> Posed:
     steepness = 1.0 / cases["aspect"].to_numpy(float)
     amplitude = cases["amplitude_g"] if "amplitude_g" in cases else steepness + cases["excess_g"]
     half_cycles = cases["half_cycles"] if "half_cycles" in cases else cases["pulse"].map(PULSES)
-    return (
-        np.arctan(np.asarray(steepness, np.float64)),
-        np.asarray(amplitude, np.float64),
-        np.asarray(cases["omega_over_p"], np.float64),
-        np.asarray(half_cycles, np.float64),
-    )
+    posed = np.arctan(steepness), amplitude, cases["omega_over_p"], half_cycles
+    alpha, strength, omega, cycles = (np.asarray(column, np.float64) for column in posed)
+    return alpha, strength, omega, cycles
 
 
 def _different(cases: pd.DataFrame) -> tuple[Posed, FloatArray | None, NDArray[np.intp]]:

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analytic.frame import Rocker
+from analytic import History, Response, Rocker
 from analytic.motion import FloatArray, Motion
-from analytic.response import History, Response
 from engines.scene import System
 
 SAMPLES = 400

@@ -7,10 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.block import RigidBlock
+from analytic import History, RigidBlock, SlidingBlock
 from analytic.motion import FloatArray, Still
-from analytic.response import History
-from analytic.slide import SlidingBlock
 from analytic.start import REST
 from engines.declaration import Stepping
 from engines.run.run import build

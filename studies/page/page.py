@@ -16,8 +16,7 @@ from tqdm import tqdm
 
 from engines import ENGINES
 from studies.cases.paper import PULSES
-from studies.kit import app
-from studies.kit.arguments import Place
+from studies.kit import app, arguments
 from studies.kit.say import number, part
 from studies.kit.store import FolderError, engines_of, provenance_of
 from studies.kit.tables import table_in, write_text
@@ -38,7 +37,7 @@ AXES = ("half_cycles", "aspect", "width_m", "onsets", "omega_over_p")
 """Columns of the grid of cases, the last running fastest."""
 
 
-def command(*, out: Place, full: bool = False) -> int:
+def command(*, out: arguments.Place, full: bool = False) -> int:
     """Run every study and write one self-contained page about them, report.html.
 
     The quick studies take six minutes on two cores, the full ones two and a half hours. To continue

@@ -10,23 +10,17 @@ import numpy as np
 import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from analytic.block import RigidBlock
-from analytic.motion import SinePulse
-from engines import ENGINES
+from analytic import RigidBlock, SinePulse
+from engines import ENGINES, scene, troubles
 from engines.declaration import AT_REST, REST_S
 from engines.factors import BEST
-from engines.scene import free_rocking_window
-from engines.troubles import TROUBLES
 from studies.cases.refusal import BadInputError
 from studies.kit.jobs import Job, Question, ask
 from studies.kit.say import capital, duration, listed, part, signed
 from studies.kit.store import check, versions, write_record
 from studies.kit.tables import read_table, tables_of, write_table, write_text
-from studies.measures.costs import STEPPED
-from studies.measures.history import samples
-from studies.measures.presets import engine_of, look_of
+from studies.measures import costs, history, presets, wrongness
 from studies.measures.published import dictionary
-from studies.measures.wrongness import MEANINGS, WORDS
 from studies.page import facts
 from studies.page.chapters import CHAPTERS, Part, published_parts
 from studies.sources.registry import core_sources
@@ -78,14 +72,14 @@ def command(*, root: Path = Path()) -> int:
 
 def measure_hero() -> pd.DataFrame:
     """Return the histories of one block under one pulse, from the sources of the first picture."""
-    window = free_rocking_window(BLOCK, PULSE)
+    window = scene.free_rocking_window(BLOCK, PULSE)
     times = np.linspace(0.0, window, 401)
     case = Question(system=BLOCK, motion=PULSE, duration=window, times=times)
     parts = []
     for name in SOURCES:
         response = ask(Job(labels={}, case=case, source=name))
         labels = {"source": name, "peak_ratio": response.peak_ratio}
-        parts.append(samples(response, BLOCK, PULSE, labels))
+        parts.append(history.samples(response, BLOCK, PULSE, labels))
     found = pd.concat(parts, ignore_index=True).round({"time_s": 9, "theta_ratio": 9})
     return found[["source", "outcome", "peak_ratio", "time_s", "theta_ratio"]]
 
@@ -100,7 +94,7 @@ def summary(histories: pd.DataFrame) -> pd.DataFrame:
 def moving(published: Path) -> str:
     """Return the peaks' errors with the default settings of the first picture's moving floor."""
     errors = summary(read_table(published / "hero" / "hero.csv")).set_index("source")["error"]
-    titles = [f"{ENGINES[engine_of(name)].title}'s" for name in MOVING]
+    titles = [f"{ENGINES[presets.engine_of(name)].title}'s" for name in MOVING]
     signs = zip(titles, errors[[*MOVING]].map(signed), strict=True)
     return f"the errors are {listed(map(' '.join, signs))}"
 
@@ -126,7 +120,7 @@ def pages(root: Path) -> dict[Path, str]:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    filters = (capital, duration, look_of, part, row)
+    filters = (capital, duration, presets.look_of, part, row)
     environment.filters |= {each.__name__: each for each in filters}
     chapters = {
         title: [_told(one, published / one.folder) for one in parts if one in known]
@@ -138,8 +132,8 @@ def pages(root: Path) -> dict[Path, str]:
         "chapters": {title: parts for title, parts in chapters.items() if parts},
         **{"made": facts.made(published), "presets": facts.presets(published)},
         "moving": moving(published),
-        **{"STEPPED": STEPPED, "TROUBLES": TROUBLES},
-        **{"WORDS": WORDS, "MEANINGS": MEANINGS, "REST_S": REST_S},
+        **{"STEPPED": costs.STEPPED, "TROUBLES": troubles.TROUBLES},
+        **{"WORDS": wrongness.WORDS, "MEANINGS": wrongness.MEANINGS, "REST_S": REST_S},
     }
     return {published / "columns.csv": dictionary(published).to_csv(index=False)} | {
         root / path: environment.get_template(name).render() for path, name in PAGES.items()

@@ -9,14 +9,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic import MODELS, integrate, simulate
-from analytic.block import RigidBlock
+from analytic import MODELS, Response, RigidBlock, SlidingBlock, integrate, simulate
 from analytic.motion import BothWays, Motion
-from analytic.response import Response
-from analytic.slide import SlidingBlock
 from engines import ENGINES, core_engines, installed_engines
 from engines.declaration import Engine, Preset, Stepping
-from engines.registry import FURTHER, find, named
+from engines.registry import FURTHER, named
 from engines.registry import announce as announce_engine
 from engines.scene import Scene, System
 from engines.settings import one_of, perhaps
@@ -90,7 +87,7 @@ def run_engine(
     from engines.run.run import run
 
     scene = scene_of(block, motion, preset, **options)
-    return run(find(engine).use(scene))
+    return run(ENGINES[engine].use(scene))
 
 
 def scene_of(
@@ -172,7 +169,6 @@ def allowed() -> str:
 
 Accuracy = Literal["loose", "standard", "tight"]
 """Of an engine whose steps land on impacts; `engines.scene.ACCURACIES` says how many steps."""
-
 
 GROUPS = {"core": core_engines, "engines": installed_engines}
 """Word -> the names of the engines for which it stands."""

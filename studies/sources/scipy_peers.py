@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from analytic.block import RigidBlock
+from analytic import History, Impact, Outcome, Response, RigidBlock
 from analytic.kernels.excursions import BROKEN
 from analytic.kernels.rest import acceleration, after_impact, ground, next_uplift, segment_at
 from analytic.motion import FloatArray, Motion
-from analytic.response import History, Impact, Outcome, Response
 from analytic.simulate import FAILURES
 from analytic.start import REST, Posed, check_vertical, pose
 
@@ -122,7 +121,6 @@ class _March:
         return path
 
     def _record(self, path: Any, side: float) -> None:
-        """Keep the peak of a stretch, and its samples."""
         self.peak = max(self.peak, path.y[0].max(), *(float(top[0]) for top in path.y_events[1]))
         wanted = self.posed.times * self.p
         inside = (wanted >= path.t[0]) & (wanted <= path.t[-1])

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from given import BLOCK, G, pulse
 
-from analytic import Outcome, Record, RigidBlock, SinePulse, simulate
-from analytic.motion import Still
+from analytic import Outcome, Record, RigidBlock, SinePulse, Still, simulate
 
 
 def sampled_forces(block, motion, history):

@@ -7,8 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from analytic import RigidBlock, SinePulse, overturning_modes, simulate
-from analytic.block import GRAVITY
+from analytic import GRAVITY, RigidBlock, SinePulse, overturning_modes, simulate
 
 ZHANG = "Zhang and Makris, Rocking response of free-standing blocks under cycloidal pulses, 2001"
 ROUSSOS = "Makris and Roussos, Géotechnique 50(3), 2000, pp. 243-262"

@@ -8,16 +8,8 @@ from closed_forms import overturning_amplitude, overturning_velocity
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from analytic import (
-    MODELS,
-    Outcome,
-    RigidBlock,
-    SinePulse,
-    overturning_modes,
-    peak_ratios,
-    simulate,
-)
-from analytic.maps import FAILED, NOT_LIFTED, SURVIVES
+from analytic import MODELS, Outcome, RigidBlock, SinePulse, peak_ratios, simulate
+from analytic.maps import FAILED, NOT_LIFTED, SURVIVES, overturning_modes
 
 LINEAR = [name for name, model in MODELS.items() if model.linear]
 

@@ -10,8 +10,7 @@ from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from analytic import MODELS, Delayed, Outcome, RigidBlock, SinePulse, simulate
-from analytic.block import housner_restitution
+from analytic import MODELS, Delayed, Outcome, RigidBlock, SinePulse, housner_restitution, simulate
 from analytic.conditioning import conditioning
 
 MOTIONS = {

@@ -8,9 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from analytic import Record, RigidBlock, SinePulse, Still, conditioning, simulate
+from analytic import Outcome, Record, RigidBlock, SinePulse, Still, conditioning, simulate
 from analytic.motion import BothWays
-from analytic.response import Outcome
 
 BLOCK = RigidBlock(width=0.6, height=1.8, offset=0.12)
 EVEN = RigidBlock(width=0.5, height=1.5)

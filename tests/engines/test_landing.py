@@ -13,9 +13,7 @@ import pytest
 from declared import equal_to
 from uses import CORE, HERE, agreed, error, errors_of_sweep, pulse, rocked
 
-from analytic import conditioning, simulate
-from analytic.block import RigidBlock
-from analytic.response import Outcome
+from analytic import Outcome, RigidBlock, conditioning, simulate
 from engines import core_engines
 from studies.cases.drawn import draw
 

@@ -10,9 +10,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from uses import BLOCK, HERE, USES, pulse, rocked
 
-from analytic import RigidBlock, simulate
-from analytic.record import Record
-from analytic.response import Outcome
+from analytic import Outcome, Record, RigidBlock, simulate
 from engines.declaration import UNTUNED, Stepping
 
 MISSED = {

@@ -14,9 +14,7 @@ from declared import rounding, run
 from known import ScriptedWorld, standing
 from uses import BLOCK, CORE, HERE, agreed, band, every_use, pulse, rocked, scene, speed_band
 
-from analytic import Delayed, RigidBlock, SlidingBlock, simulate
-from analytic.motion import SinePulse, Still
-from analytic.response import Outcome
+from analytic import Delayed, Outcome, RigidBlock, SinePulse, SlidingBlock, Still, simulate
 from engines.declaration import REST_S, UNTUNED, Stepping
 from engines.run.run import build, simulate_world
 from engines.scene import ACCURACIES

@@ -9,8 +9,7 @@ from declared import run
 from given import all_but_times
 from uses import BLOCK, HERE, error, pulse, rocked, scene, take_a_step
 
-from analytic import RigidBlock, SinePulse
-from analytic.motion import Still
+from analytic import RigidBlock, SinePulse, Still
 from analytic.response import Outcome, Reason
 from engines import drake
 from engines.declaration import AT_REST

@@ -7,8 +7,7 @@ import pytest
 from known import KnownWorld, ScriptedWorld, SelfSteppingWorld, exactly, watched
 from uses import BLOCK, pulse, scene
 
-from analytic import simulate
-from analytic.response import Outcome
+from analytic import Outcome, simulate
 from engines.declaration import Precision, Stepping
 from engines.world import Moment
 

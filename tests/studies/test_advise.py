@@ -7,8 +7,7 @@ import pandas as pd
 import pytest
 from given import BLOCK
 
-from analytic import simulate
-from analytic.block import GRAVITY
+from analytic import GRAVITY, simulate
 from engines import ENGINES
 from engines.declaration import AT_REST, PASTED
 from engines.registry import OWN

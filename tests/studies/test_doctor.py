@@ -6,8 +6,7 @@ from functools import partial
 
 import pytest
 
-from analytic import simulate
-from analytic.response import Response
+from analytic import Response, simulate
 from studies import doctor
 from studies.__main__ import run
 from studies.kit.identity import version_of

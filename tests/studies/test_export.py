@@ -7,9 +7,8 @@ from commanding import CASE, compared, python, refused, run_scripts
 from declared import run
 from given import BLOCK, PULSE
 
-from analytic import RockingFrame, SinePulse, SlidingBlock
+from analytic import Record, RockingFrame, SinePulse, SlidingBlock
 from analytic.motion import BothWays
-from analytic.record import Record
 from engines import ENGINES, Scene, installed_engines
 from engines.declaration import UNTUNED, Stepping
 from engines.run.export import Notes

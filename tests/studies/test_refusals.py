@@ -85,9 +85,9 @@ compare BLOCK --record X.AT2 --pga 1e308 | --record scaled to --pga 1e+308 | fin
 compare BLOCK --record X.AT2 --units ft | --units is 'ft'
 compare BLOCK --record X.AT2 --duration 0.01 | length of the motion, 0.03 s
 compare BLOCK --record /nowhere/at.all | --record is | a file that can be read (No such file
-compare BLOCK --record /dev/null | --record is | a file that can be read (it is a device)
-compare BLOCK --record . | --record is | a file that can be read (it is a folder)
-compare BLOCK --record PIPE | --record is | a file that can be read (it is a named pipe)
+compare BLOCK --record /dev/null | --record is | a file that can be read (it is a folder, a pipe
+compare BLOCK --record . | --record is | a file that can be read (it is a folder, a pipe
+compare BLOCK --record PIPE | --record is | a file that can be read (it is a folder, a pipe
 compare CASE --baseline none | only with --record
 compare CASE --vertical-omega 9 | --vertical-amplitude missing | requires both
 compare CASE --vertical X.AT2 --vertical-omega 9 | --vertical-omega is 9; it may be given only

@@ -16,8 +16,7 @@ import pytest
 from given import BLOCK, PULSE
 from matplotlib.text import Text
 
-from analytic import RigidBlock, SinePulse, simulate
-from analytic.block import GRAVITY
+from analytic import GRAVITY, RigidBlock, SinePulse, simulate
 from engines import ENGINES
 from engines.scene import free_rocking_window
 from studies import respond

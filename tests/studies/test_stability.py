@@ -7,8 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import Outcome, Response, simulate
-from analytic.response import History, Impact
+from analytic import History, Impact, Outcome, Response, simulate
 from studies import stability
 from studies.__main__ import run as rocking
 from studies.cases.extreme import QUICK, SPRINGS, Extreme, extremes

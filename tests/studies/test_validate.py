@@ -8,8 +8,7 @@ import pandas as pd
 import pytest
 from given import BLOCK, PULSE
 
-from analytic import frame_demands, simulate
-from analytic.response import Outcome
+from analytic import Outcome, frame_demands, simulate
 from engines.scene import BEAM_DEPTH, SPACING
 from studies import respond, validate
 from studies.cases.drawn import FRICTION, LEAST_NORMAL, draw
@@ -20,7 +19,7 @@ from studies.measures.differences import sensitivity_of, summarize, with_referen
 from studies.measures.halving import Trust, estimate_of, factors, halved, step_of
 from studies.measures.wrongness import FALL, KINDS, MEANINGS, NO_ANSWER, REST, kinds_of
 from studies.sources.registry import core_sources
-from studies.validate import STUDY, Options, beside_errors, finding, jobs, quantiles
+from studies.validate import STUDY, Options, beside_errors, finding, jobs
 
 
 def test_cases_keep_their_ranges_and_their_reference_valid():
@@ -52,20 +51,6 @@ def table(rows, **columns):
         **{"agrees": True, "exact_peak": 0.3, "error": 0.0, "case": range(len(rows))},
     }
     return pd.DataFrame({"source": rows, **ordinary, **columns})
-
-
-def test_quantiles_are_of_what_survives():
-    errors = table(
-        ["mujoco"] * 5,
-        exact_peak=[0.005, 0.05, 0.1, 0.7, math.inf],
-        exact_outcome=["rocked"] * 4 + ["overturned"],
-        agrees=[True, True, True, False, True],
-        error=[3.66, -0.2, 1e-3, math.nan, math.nan],
-    )
-    found = errors.assign(outcome="rocked", peak_ratio=[0.023, 0.04, 0.1, 0.03, 0.8])
-    (line,) = quantiles(found).to_dict("records")
-    assert (line["cases"], line["fall_wrong"], line["rest_wrong"]) == (5, 1, 1)
-    assert (line["median_error"], line["max_difference"]) == pytest.approx((0.2, 3.66 * 0.005))
 
 
 def test_the_finding_names_the_best_and_the_worst_source():
@@ -223,7 +208,9 @@ def test_a_summary_has_a_column_for_each_kind():
     labels = {"figure": 6, "pulse": "half-sine", "excess_g": 0.05, "aspect": 2.0, "wall_s": 1e-3}
     compared = with_reference(pd.DataFrame(found, columns=columns).assign(source="it", **labels))
     assert list(compared["agrees"]) == [True, False, False, False, False, False]
-    line = summarize(compared).iloc[0]
+    line, (error, *_) = summarize(compared).iloc[0], compared["error"]
+    assert (line["survivors"], line["median_error"]) == (1, abs(error))
+    assert line["max_difference"] == pytest.approx(abs(error) * compared["exact_peak"].iloc[0])
     assert {kind: line[kind] for kind in MEANINGS} == {FALL: 2, REST: 2, NO_ANSWER: 1}
     assert line["agree"] + sum(line[kind] for kind in KINDS) == line["cases"]
     assert (line["false_overturnings"], line["missed_overturnings"]) == (1, 1)
