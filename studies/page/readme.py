@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,7 @@ from studies.measures.presets import engine_of, look_of
 from studies.measures.published import dictionary
 from studies.measures.wrongness import MEANINGS, WORDS
 from studies.page import facts
-from studies.page.chapters import CHAPTERS, Part, published_parts
+from studies.page.chapters import CHAPTERS, PUBLISHED_WITH, Part, published_parts
 from studies.sources.registry import core_sources
 from studies.sweep import STUDY as SWEEP
 
@@ -149,5 +150,5 @@ def pages(root: Path) -> dict[Path, str]:
 def _told(one: Part, folder: Path) -> dict[str, Any]:
     """Return what the pages say of a part, and its pictures."""
     pictures = [(it.name, one.study.caption_of(it.stem)) for it in sorted(folder.glob("*.png"))]
-    found = one.found(one.study.read(folder), full=True)
-    return {**found, "command": one.published_command, "pictures": pictures}
+    one = replace(one, full=PUBLISHED_WITH.get(one.folder, one.full))
+    return {**one.found(one.study.read(folder), full=True), "pictures": pictures}
