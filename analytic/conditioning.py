@@ -104,7 +104,7 @@ def sensitivity(
 def scaled(
     block: Rocker, motion: Motion, model: str | Model = "exact", start: tuple[float, float] = REST
 ) -> Callable[[float, float], tuple[float, Outcome]]:
-    """Return what solves one response, given factors of its motion and of eta: peak and outcome."""
+    """Return what solves a response, given factors of its motion, both ways, and of eta."""
     posed = pose(block, motion, model, start)
     moving = posed.then_still(posed.segments[-1, 1])
     steps, exactly = posed.steps, accuracy(TOLERANCE)
@@ -114,8 +114,7 @@ def scaled(
     def solve(stronger: float, livelier: float) -> tuple[float, Outcome]:
         if broken:
             return math.nan, Outcome.FAILED
-        harder = moving.copy()
-        harder[:, [2, 5, 6]] *= stronger
+        harder = moving * np.resize([1, 1, stronger, 1, 1, stronger, stronger], moving.shape[1])
         right, left = (
             law._replace(eta=min(livelier * law.eta, max(law.eta, 1.0))) for law in posed.laws
         )

@@ -263,6 +263,10 @@ class BothWays:
         """Ground displacement [m] at the times `t` [s]."""
         return self.level.displacement(t)
 
+    def scaled(self, factor: float) -> "BothWays":
+        """Return both, of records, with their accelerations multiplied."""
+        return BothWays(*(it.scaled(factor) for it in (self.level, self.upward)))  # type: ignore[attr-defined]
+
     def segments(self) -> FloatArray:
         """Rows of `SEGMENT_COLUMNS` twice, the second ones upwards, between the knots of both."""
         both = [motion.segments() for motion in (self.level, self.upward)]

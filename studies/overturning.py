@@ -232,11 +232,9 @@ def finding(tables: Tables) -> str:
     if "parts" in tables:
         sums = tables["parts"].groupby("source", sort=False)[["close", "cases"]].sum()
         shares = (sums["close"] / sums["cases"]).sort_values()
-        ends = [
-            f"{part(shares[it])} of the pulses with {titled(it)}" for it in shares.index[[0, -1]]
-        ]
-        ends = list(dict.fromkeys(ends))
-        said.append(f"Peaks are within {part(CLOSE)} for {' and '.join(ends)}.")
+        first, last = shares.index[[0, -1]]
+        ends = {it: f"{part(shares[it])} of the pulses with {titled(it)}" for it in (first, last)}
+        said.append(f"Peaks are within {part(CLOSE)} for {' and '.join(ends.values())}.")
     return " ".join(said) or "The exact solution maps the plane."
 
 

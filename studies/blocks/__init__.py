@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
@@ -18,16 +19,18 @@ from cyclopts import Parameter
 from analytic.accelerograms import Units
 from analytic.block import GRAVITY, RigidBlock
 from analytic.conditioning import scaled
+from analytic.motion import BothWays
 from analytic.record import Record
 from analytic.response import Outcome
 from analytic.simulate import simulate
 from analytic.slide import SlidingBlock
 from studies.blocks.cabinets import Cabinet, Unit, read_cabinets
-from studies.blocks.fragility import MOST_ONSETS, fragility
+from studies.blocks.fragility import MOST_ONSETS, RESAMPLED, fragility
+from studies.cases.refusal import BadInputError
 from studies.kit import arguments
 from studies.kit.arguments import Running
 from studies.kit.jobs import Job, Question, Row, ask, plain, summary, unanswered
-from studies.kit.say import capital, out_of
+from studies.kit.say import capital, out_of, part
 from studies.kit.scene_options import Baseline, baseline_note, read_record, window_of
 from studies.kit.study import Figures, Study, Tables, stages
 from studies.measures.presets import is_engine
@@ -39,7 +42,7 @@ WIDTH = 1e-6
 
 
 class Strength(NamedTuple):
-    """Factors on a motion that lift and overturn, the latter inf if none up to MOST_ONSETS does."""
+    """Factors on a motion that lift and overturn: inf if none does, nan if it lifts off before."""
 
     lifts: float
     margin: float
@@ -56,31 +59,34 @@ COLUMNS = [
     *("baseline", "scale", "source", "outcome", "peak_ratio", "impacts", "steps", "wall_s"),
     *("message", "slip_m", "residual_m", "friction_needed", *FOUND),
 ]
-TAKEN = (*COLUMNS, "no_margin")
+TAKEN = (*COLUMNS, "no_margin", "vertical", "horizontal_peak_ratio")
 """Names that no further column of a list may have."""
 MANY = 100
 """Searches from which on they run in processes, beside each other."""
-FLAT, SLIDES_FIRST = "slides", "slides first"
-"""Friction is less than the rocking needs: a block has no margin, a model no answer."""
+FLAT, SLIDES_FIRST, LIFTS_OFF = "slides", "slides first", "lifts off"
+"""Why a block has no margin, and a model no answer: for want of friction, or of weight."""
 
 
 def jobs(
     cabinets: Sequence[Cabinet],
-    grounds: Mapping[str, Record],
+    grounds: Mapping[str, Record | BothWays],
     scales: Sequence[float],
     sources: Sequence[str],
     baseline: str = "",
+    verticals: Mapping[str, str] | None = None,
 ) -> list[Job]:
     """Return a job for each block, record, scale and source, and a search for each margin."""
     moves = {
         name: {
             "record": name,
             "record_digest": sha256(json.dumps(ground, default=plain).encode()).hexdigest()[:12],
-            "pga_g": ground.peak / GRAVITY,
-            "pgv_m_s": float(np.abs(ground.velocity(ground.breakpoints)).max()),
+            "pga_g": level.peak / GRAVITY,
+            "pgv_m_s": float(np.abs(level.velocity(level.breakpoints)).max()),
             "baseline": baseline,
+            **({"vertical": verticals[name]} if verticals else {}),
         }
         for name, ground in grounds.items()
+        for level in [cast(Record, getattr(ground, "level", ground))]
     }
     moved = {}
     for name, scale in product(grounds, [*scales, ALL_SCALES]):
@@ -92,7 +98,8 @@ def jobs(
         engine, motion = is_engine(source), moved[name, scale]
         # a model of what rocks is not asked about what slides: `tabulate` marks its row
         block = cabinet.system if engine or source == "exact" else cabinet.block
-        if scale == ALL_SCALES and not isinstance(block, RigidBlock):
+        unasked = engine and bounds(block, motion)[1] <= 1.0  # the exact row says why
+        if unasked or (scale == ALL_SCALES and not isinstance(block, RigidBlock)):
             continue
         window = window_of(block, motion)
         listed = asdict(cabinet)
@@ -112,7 +119,8 @@ def jobs(
 
 def measure(job: Job) -> Row:
     """Return an answer, with the friction of the exact one; or how strong a record overturns."""
-    block, motion = cast(RigidBlock, job.case.system), cast(Record, job.case.motion)
+    block, motion = cast(RigidBlock, job.case.system), cast("Record | BothWays", job.case.motion)
+    level = cast(Record, getattr(motion, "level", motion))
     if job.labels["scale"] == ALL_SCALES:
         try:
             if job.lost is not None:
@@ -121,29 +129,43 @@ def measure(job: Job) -> Row:
         except RuntimeError as error:
             return unanswered(str(error))
         return {**unanswered(""), "outcome": "found", **found._asdict()}
+    if bounds(block, motion)[1] <= 1.0:
+        return {**unanswered(""), "outcome": LIFTS_OFF if isinstance(block, RigidBlock) else FLAT}
     response = ask(job)
-    row, note = summary(response), baseline_note(motion, job.labels["baseline"] or None)
+    row, note = summary(response), baseline_note(level, job.labels["baseline"] or None)
     row["message"] = "; ".join(filter(None, (row["message"], note)))
     rocks = job.source == "exact" and isinstance(block, RigidBlock)
+    if rocks and level is not motion:
+        row["horizontal_peak_ratio"] = simulate(block, level).peak_ratio
     places = np.abs(np.cumsum([0.0, *response.slips]))  # it turns back where a slip ends
     if isinstance(block, SlidingBlock) and response.outcome is not Outcome.FAILED:
         row |= {"slip_m": float(places.max()), "residual_m": float(places[-1])}
     return {**row, "friction_needed": response.friction_needed if rocks else math.nan}
 
 
-def strength(block: RigidBlock, motion: Record) -> Strength:
+def bounds(block: RigidBlock | SlidingBlock, motion: Record | BothWays) -> tuple[float, float]:
+    """Return the factors that lift a block, and off its base; the latter 0 where none is solved."""
+    slope, solved = math.tan(block.alpha), isinstance(block, RigidBlock)
+    if isinstance(motion, Record):
+        return slope * block.gravity / motion.peak, math.inf
+    pulls = np.abs(motion.acceleration(motion.breakpoints))
+    pulls -= slope * motion.upward.acceleration(motion.breakpoints)
+    falls = max(-motion.lowest, 1e-300)
+    return slope * block.gravity / float(pulls.max()), solved * block.gravity / falls
+
+
+def strength(block: RigidBlock, motion: Record | BothWays) -> Strength:
     """Find by which factors on a motion the exact block overturns; RuntimeError if one fails."""
     # under a long record overturning begins in slivers, some no wider than 1e-5 of the factor: one
     # between two points of the grid is not seen
-    solve = scaled(block, motion)
+    solve, (lifts, most) = scaled(block, motion), bounds(block, motion)
 
     def falls(factor: float) -> bool:
-        outcome = solve(factor, 1.0)[1]
+        outcome = Outcome.OVERTURNED if factor >= most else solve(factor, 1.0)[1]
         if outcome is Outcome.FAILED:
             raise RuntimeError(f"no margin: the solution at the factor {factor:g} failed")
         return outcome is Outcome.OVERTURNED
 
-    lifts = math.tan(block.alpha) * block.gravity / motion.peak
     count = round(math.log(MOST_ONSETS) / math.log1p(APART))
     factors = [lifts * (1.0 + APART) ** n for n in range(count + 1)]
     high = next(filter(falls, factors[1:]), math.inf)
@@ -151,6 +173,8 @@ def strength(block: RigidBlock, motion: Record) -> Strength:
     while high - low > WIDTH * high:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if falls(middle) else (middle, high)
+    if most <= high < math.inf:
+        return Strength(lifts, math.nan, math.nan)
     needed = simulate(block, motion.scaled(min(high, factors[-1]))).friction_needed
     return Strength(lifts, high, needed)
 
@@ -173,17 +197,41 @@ def tabulate(rows: pd.DataFrame) -> Tables:
     failed = table["searched"] == Outcome.FAILED.value
     weak = short & (table["scale"] <= table["margin"])
     weak |= table["friction"] < table["margin_friction"]
-    words = [FLAT, Outcome.FAILED.value, SLIDES_FIRST]
+    words = [FLAT, Outcome.FAILED.value, SLIDES_FIRST, LIFTS_OFF]
     weak = weak.groupby(pair).transform("any")
-    table["no_margin"] = np.select([flat, failed, weak], words, "")
+    table["no_margin"] = np.select([flat, failed, weak, table["margin"].isna()], words, "")
     table.loc[table["no_margin"] != "", "margin"] = math.nan
-    kept = (Outcome.SLID.value, Outcome.AT_REST.value, Outcome.FAILED.value)
+    kept = (Outcome.SLID.value, Outcome.AT_REST.value, Outcome.FAILED.value, FLAT, LIFTS_OFF)
     moved = short | (flat & (table["exact_outcome"] != Outcome.AT_REST.value))
     moved &= ~table["outcome"].isin(kept) & ~table["source"].map(is_engine)
     table.loc[moved, ["outcome", "peak_ratio"]] = SLIDES_FIRST, math.nan
     table = table.drop(columns=["exact_outcome", "searched"])
     several = table["record"].nunique() > 1
-    return {"blocks": table, **({"fragility": fragility(ranked(table))} if several else {})}
+    more = {"fragility": fragility(ranked(table))} if several else {}
+    if several and table.filter(["horizontal_peak_ratio"]).gt(0.0).any(axis=None):
+        more["vertical"] = changes(table)
+    return {"blocks": table, **more}
+
+
+def changes(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return what vertical records change of what rocks, for each horizontal record and for all."""
+    rows = rows.dropna(subset=["peak_ratio", "horizontal_peak_ratio"])
+    peak, alone = rows["peak_ratio"], rows["horizontal_peak_ratio"]
+    falls, fell = np.isinf(peak), np.isinf(alone)
+    rows = rows.assign(
+        cases=1,
+        falls=falls & ~fell,
+        stands=fell & ~falls,
+        share=(falls != fell).astype(float),
+        peak=(peak / alone - 1.0).abs().where((peak * alone).between(0.0, math.inf, "neither")),
+    )[np.fmax(peak, alone) > 0.0]
+    ways = {"cases": "sum", "falls": "sum", "stands": "sum", "share": "mean", "peak": "median"}
+    shares = rows.groupby("vertical")["share"].mean()  # it may be that of two horizontal ones
+    drawn = np.random.default_rng(0).choice(shares, (RESAMPLED, len(shares))).mean(axis=1)
+    rows = pd.concat([rows, rows.assign(record="all records")])
+    table = rows.groupby("record", sort=False).agg(ways).reset_index()
+    table.loc[len(table) - 1, ["share_low", "share_high"]] = np.quantile(drawn, [0.05, 0.95])
+    return table
 
 
 def ranked(rows: pd.DataFrame) -> pd.DataFrame:
@@ -206,12 +254,12 @@ def finding(tables: Tables) -> str:
             f"below; {first['name']} overturns first, at {first['margin']:.4g} times "
             f"{first['record']}."
         )
-    flat = lines.loc[lines["no_margin"] == FLAT, "name"].nunique()
-    if flat:
+    if flat := lines.loc[lines["no_margin"] == FLAT, "name"].nunique():
         words += f" {capital(out_of(flat, blocks))} blocks slide and do not rock."
-    if short := int((lines["no_margin"] == SLIDES_FIRST).sum()):
-        pairs = "block and record" if len(lines) == 1 else "pairs of a block and a record"
-        words += f" In {out_of(short, len(lines))} {pairs} the block slides first: no margin holds."
+    for word in (SLIDES_FIRST, LIFTS_OFF):
+        if short := int((lines["no_margin"] == word).sum()):
+            pairs = f"{out_of(short, len(lines))} pairs of a block and a record"
+            words += f" In {pairs} the block {word}: no margin holds."
     if "fragility" in tables:
         every = tables["fragility"].query("measure == 'factor'").iloc[-1]
         if np.isfinite(every["median"]):
@@ -220,6 +268,13 @@ def finding(tables: Tables) -> str:
                 f"\n\nUnder half of {every['records']:.0f} records a block of the list overturns "
                 f"at the factor {every['median']:.3g} or below{spread}."
             )
+    if "vertical" in tables:
+        line = tables["vertical"].iloc[-1]
+        share, peak, low, high = map(part, line.iloc[-4:])
+        words += (
+            f"\n\nVertical shaking decides whether a block overturns in {share} of {line['cases']} "
+            f"cases that rock (90 % interval {low} to {high}); peaks move by {peak} in the median."
+        )
     return words
 
 
@@ -240,12 +295,11 @@ def shown(tables: Tables) -> Tables:
     })  # fmt: skip
     facts = facts[[*PAIR, "B × H [m]", "friction", "needed", "lifts", "overturns at"]]
     title = "Factors on a record that lift and overturn each block, and outcomes with peaks"
-    short = {}
+    short = {"What vertical records change": tables["vertical"]} if "vertical" in tables else {}
     if "fragility" in tables:
         over = tables["fragility"].query("measure == 'factor'")
-        columns = ["name", "records", "left_out", "least", "median", "theta", "beta"]
-        columns += ["theta_low", "theta_high"]
-        short = {"Factors that overturn each block, over the records": over[columns]}
+        over = over.drop(columns=["measure", "most", "beta_low", "beta_high"])
+        short |= {"Factors that overturn each block, over the records": over}
     return {**short, title: facts.merge(answers, on=PAIR)}
 
 
@@ -264,7 +318,7 @@ STUDY = Study(
     name="blocks",
     question="Which blocks of a list overturn under recorded ground motions, with what margin?",
     help="",
-    texts=("name", "record", "record_digest", "source", "outcome", "no_margin"),
+    texts=("name", "record", "record_digest", "source", "outcome", "no_margin", "vertical"),
     captions={
         "blocks": "Blocks ranked by the factor on a record that overturns them first, "
         "each a line as the key says.",
@@ -280,6 +334,7 @@ def command(
     *,
     record: Annotated[tuple[arguments.Place, ...], arguments.several],
     out: arguments.Out,
+    vertical: Annotated[tuple[arguments.Place, ...], arguments.several] = (),
     scale: Annotated[tuple[arguments.Positive, ...], arguments.several] = (1.0,),
     pga: arguments.Positive | None = None,
     unit: Annotated[Unit, arguments.one_of(Unit)] = "m",
@@ -304,6 +359,9 @@ def command(
         friction; further columns are kept. A line that begins with # is a comment.
     record
         Recorded accelerograms, files as `rocking compare --record` takes them.
+    vertical
+        Acceleration of the base upwards, a file for each of --record, in the same order. Every
+        factor is on both. Rows of the exact solution have the peak without it, too.
     scale
         Factors on the records' acceleration.
     pga
@@ -320,18 +378,25 @@ def command(
     """
     arguments.refuse_repeats("--scale", scale)
     arguments.refuse_repeats("--record", [Path(path.name) for path in record])
-    grounds = {
-        path.name: read_record(path, units, baseline, record_dt, insist=False) for path in record
-    }
+    if vertical and (named := len(vertical)) != len(record):
+        raise BadInputError(
+            f"--vertical names {named}; it must name {len(record)}, as --record does"
+        )
+    read = partial(read_record, units=units, baseline=baseline, dt=record_dt, insist=False)
+    grounds = {path.name: read(path) for path in record}
+    upward = dict(zip(grounds, map(partial(read, option="--vertical"), vertical), strict=False))
     if pga is not None:
         with arguments.as_bad_input("--record scaled to --pga: "):
+            upward = {it: upward[it].scaled(pga * GRAVITY / grounds[it].peak) for it in upward}
             grounds = {name: each.scaled_to(pga * GRAVITY) for name, each in grounds.items()}
     listed = read_cabinets(cabinets, unit, TAKEN)
     sources = tuple(dict.fromkeys(["exact", *sources]))
-    given = {"sources": sources, "scale": scale, "units": units, "baseline": baseline}
-    found = jobs(listed, grounds, scale, sources, baseline or "")
+    names = {name: path.name for name, path in zip(upward, vertical, strict=True)}
+    pairs = {name: BothWays(grounds[name], each) for name, each in upward.items()}
+    found = jobs(listed, {**grounds, **pairs}, scale, sources, baseline or "", names)
+    given = {"sources": sources, "scale": scale, "units": units, "baseline": baseline, "pga": pga}
     code = STUDY.carry_out(
-        out, found, running, record=[*grounds], record_dt=record_dt, pga=pga, **given
+        out, found, running, record=[*grounds], vertical=names, record_dt=record_dt, **given
     )
     STUDY.hand_on(
         out,

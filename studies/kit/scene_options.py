@@ -63,8 +63,9 @@ class Excitation:
     scipy.signal.detrend. By default nothing is subtracted, and the velocity of the base at the end
     is reported."""
     vertical: arguments.Place | None = None
-    """A recorded acceleration of the base upwards, in a file as of --record; --scale and --pga
-    leave it alone. The exact model and engines take it, but presets that land do not."""
+    """A recorded acceleration of the base upwards, in a file as of --record; one that says DWN or
+    DOWN is turned. --scale and --pga leave it alone. The exact model and engines take it, but
+    presets that land do not."""
     vertical_amplitude: arguments.Finite | None = None
     """Amplitude of a pulse of the base upwards [g], instead of --vertical; it may be negative."""
     vertical_omega: arguments.Positive | None = None
@@ -98,10 +99,9 @@ class Excitation:
             arguments.refuse_given(pulse, "only without --record")
             return self._recorded(self.record)
         arguments.refuse_given(self._given("scale", "pga"), "only with --record")
+        reading = self._given("record_dt", "units", "baseline")
         if self.vertical is None:
-            arguments.refuse_given(
-                self._given("record_dt", "units", "baseline"), "only with --record"
-            )
+            arguments.refuse_given(reading, "only with --record")
         released = (self.tilt or self.rate) and set(pulse.values()) == {None}
         return Still() if released else self._pulse()
 
@@ -205,10 +205,9 @@ class Standing:
 
     def system(self, width: float, height: float, friction: float | None) -> System:
         """Return the system that the options mean; of --friction only what slides knows."""
+        beam = {"columns": self.columns, "load": self.load}
         if self.scene != "frame":
-            arguments.refuse_given(
-                {"columns": self.columns, "load": self.load}, "only with --scene frame"
-            )
+            arguments.refuse_given(beam, "only with --scene frame")
         if self.scene != "block":
             arguments.refuse_given({"offset": self.offset}, "only with --scene block")
         block = block_of(width, height)
@@ -240,11 +239,8 @@ def window_of(
     watched_s = free_rocking_window(block, motion) if duration is None else duration
     most_s = MOST_TIME / block.p
     if watched_s > most_s:
-        asked = (
-            f"--width is {block.width:g} and --height {block.height:g}; what moves the block"
-            if duration is None
-            else f"--duration is {duration:g}; it"
-        )
+        asked = f"--width is {block.width:g} and --height {block.height:g}; what moves the block"
+        asked = asked if duration is None else f"--duration is {duration:g}; it"
         raise BadInputError(
             f"{asked} must last at most {most_s:.4g} s, {MOST_TIME:g} times 1/p, "
             f"and the block is watched for {watched_s:.4g} s"
@@ -275,14 +271,13 @@ def read_record(
         problem = re.sub(r"; units(?= must)", "; --units", str(error).removeprefix("path"))
         problem = re.sub(r"; dt(?=,| must not)", "; --record-dt", problem)
         raise BadInputError(f"{option}{problem}") from error
-    try:
+    with arguments.as_bad_input(f"{option} is {str(path)!r}; "):
         if baseline == "constant" or baseline == "linear":
             record = record.detrended(baseline)
-    except ValueError as error:
-        raise BadInputError(f"{option} is {str(path)!r}; {error}") from error
-    if record.peak == 0.0:
-        raise BadInputError(f"{option} is {str(path)!r}; it is zero throughout, and must not be")
-    return record
+        if record.peak == 0.0:
+            raise ValueError("it is zero throughout, and must not be")
+    down = re.search(r",\s*(DWN|DOWN)\b", path.read_text(errors="replace")[:999], re.IGNORECASE)
+    return record.scaled(-1.0) if down and option == "--vertical" else record
 
 
 def baseline_note(record: Record, baseline: str | None) -> str:

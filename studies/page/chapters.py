@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -34,24 +34,19 @@ class Part:
 
     def words(self, out: Path | str, full: bool) -> list[str]:
         """Return the command line after `rocking`."""
-        options = f"{self.needs} {self.always} {self.full if full else self.quick}"
-        return [self.name, "--out", str(out), *options.split()]
+        options = (self.needs, self.always, self.full if full or self.needs else self.quick)
+        return [self.name, "--out", str(out), *" ".join(options).split()]
 
     def command(self, full: bool) -> str:
         """Return the whole command line."""
         return " ".join(["rocking", *self.words("DIR", full)])
-
-    @property
-    def published_command(self) -> str:
-        """The whole command line that makes what is published, with every engine."""
-        return replace(self, full=PUBLISHED_WITH.get(self.folder, self.full)).command(full=True)
 
     def found(self, tables: Tables, full: bool) -> dict[str, Any]:
         """Return what every page says of its tables."""
         return {
             "folder": self.folder,
             "question": self.title or self.study.question,
-            "claim": self.study.finding(tables),
+            "claim": self.study.finding(tables).split("\n\n")[-1],
             "command": self.command(full),
             "statements": statements(tables),
         }
@@ -129,19 +124,22 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
             full="--sources engines:default",
             quick="--quick --sources core:default",
         ),
+        Part(
+            *("vertical", "blocks", "How much does vertical shaking matter?"),
+            needs="studies/blocks/grid.csv --pga 0.4 --scale 0.5 1 2 --record FOLDER/*/*hor1.AT2 "
+            "FOLDER/*/*hor2.AT2 --vertical FOLDER/*/*[Uu][Pp].AT2 FOLDER/*/*[Uu][Pp].AT2",
+        ),
     ),
     "Other scenes": (Part("scenes", "scenes"),),
     "Real bodies": (
         Part(
             *("rocks", "experiments"),
             "Which rocks fall on a shake table, and who predicts it?",
-            quick="",
             needs="--rocks FOLDER",
         ),
         Part(
             *("cubes", "experiments"),
             "Which engine predicts where a tossed cube goes?",
-            quick="",
             needs="--cubes FOLDER",
         ),
     ),

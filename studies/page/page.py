@@ -100,7 +100,7 @@ def write_page(path: Path, folder: Path, full: bool) -> None:
     environment = Environment(loader=PackageLoader("studies.page", "."), autoescape=True)
     text = environment.get_template("page.html").render(
         chapters={
-            title: [_section(one, folder / one.folder, full) for one in parts]
+            title: [_section(one, folder / one.folder, full) for one in parts if not one.needs]
             for title, parts in CHAPTERS.items()
             if not parts[0].needs
         },

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from studies.kit.tables import read_table, tables_of, write_table, write_text
 from studies.measures import costs, history, presets, wrongness
 from studies.measures.published import dictionary
 from studies.page import facts
-from studies.page.chapters import CHAPTERS, Part, published_parts
+from studies.page.chapters import CHAPTERS, PUBLISHED_WITH, Part, published_parts
 from studies.sources.registry import core_sources
 from studies.sweep import STUDY as SWEEP
 
@@ -143,5 +144,5 @@ def pages(root: Path) -> dict[Path, str]:
 def _told(one: Part, folder: Path) -> dict[str, Any]:
     """Return what the pages say of a part, and its pictures."""
     pictures = [(it.name, one.study.caption_of(it.stem)) for it in sorted(folder.glob("*.png"))]
-    found = one.found(one.study.read(folder), full=True)
-    return {**found, "command": one.published_command, "pictures": pictures}
+    one = replace(one, full=PUBLISHED_WITH.get(one.folder, one.full))
+    return {**one.found(one.study.read(folder), full=True), "pictures": pictures}

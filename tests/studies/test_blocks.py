@@ -87,6 +87,34 @@ def test_a_used_folder_refuses_another_list_and_takes_a_longer_one(place, capsys
     assert read(place)["name"].tolist() == ["A", "B", "C", "nan", "D"]
 
 
+def test_records_and_their_vertical_ones(place, capsys):
+    """Factors are on both; nobody is asked what lifts off or slides; DWN counts downwards."""
+    for seed, name in enumerate(("X.AT2", "Y.AT2", "V.AT2", "W.AT2")):
+        text = write_record(place / name, noise(seed, 500, 0.01, 5.0)).read_text()
+        (place / name).write_text(text.replace("ABC, N", "ABC, DWN"))
+    (place / "list.csv").write_text(HEAD + "A,.5,1.5,\nB,.4,1.9,.2\nC,1,1.2,\nD,1.5,1.4,\n")
+    asked = [*ASKED[:4], "Y.AT2", "--vertical", "V.AT2", "W.AT2", "--scale", "1", "1.5", "3"]
+    assert run([*asked, "--sources", "mujoco:tuned", "--out", "out"]) == 0
+    rows = read(place)
+    for row in rows[rows["horizontal_peak_ratio"] > 0.0].itertuples():
+        block = RigidBlock(width=row.width_m, height=row.height_m)
+        level, upward = (Record.read(place / name) for name in (row.record, row.vertical))
+        factors = [edge + side * WIDTH for edge in (row.lifts, row.margin) for side in (-1.0, 1.0)]
+        moves = [(level.scaled(it), upward.scaled(-it)) for it in (row.scale, *factors) if it > 0.0]
+        peaks = [simulate(block, move, vertical=up).peak_ratio for move, up in moves]
+        alone = simulate(block, moves[0][0]).peak_ratio
+        assert (row.peak_ratio, row.horizontal_peak_ratio) == (peaks[0], alone)
+        assert peaks[1] == 0.0 < peaks[2] < 1.0
+        assert row.no_margin or peaks[3] < peaks[4] == math.inf
+    by = rows.query("source == 'exact' and record == 'Y.AT2'").groupby("name")["outcome"].agg(list)
+    assert [by["B"], by["D"]] == [["slides"] * 3, ["at rest", "rocked", "lifts off"]]
+    assert len(rows) == 24 + 15  # three rows of C and D lift off
+    both = rows.query("0 < peak_ratio < inf and 0 < horizontal_peak_ratio < inf")
+    moved = (both["peak_ratio"] / both["horizontal_peak_ratio"] - 1.0).abs().median()
+    table = blocks.STUDY.read(place / "out")["vertical"]
+    assert table.iloc[-1, 1:].tolist() == [9, 0, 1, 1 / 9, moved, 0.0, 0.2]
+
+
 BAD = [
     (HEAD + "A,-1,1.5,\n", "line 2: width is '-1'; it must be from 0.001 to 200 m"),
     (HEAD + "A,500,1500,\n", "line 2: width is '500'; .*; --unit mm takes millimetres"),

@@ -97,11 +97,8 @@ def test_every_link_of_a_page_leads_somewhere():
 def anchors(path):
     text = path.read_text(encoding="utf-8")
     heads = re.findall("^#+ (.*)$", text, re.MULTILINE)
-    return {*re.findall(r'<a id="([^"]+)"', text), *(slug(head) for head in heads)}
-
-
-def slug(head):
-    return re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-")
+    slugs = (re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-") for head in heads)
+    return {*re.findall(r'<a id="([^"]+)"', text), *slugs}
 
 
 def test_the_first_picture_is_of_the_case_that_it_names():

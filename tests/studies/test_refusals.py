@@ -96,6 +96,7 @@ compare CASE --vertical-amplitude -1 --vertical-omega 9 | --vertical falls to -9
 export CASE --out DIR --engine mujoco --record x | it may be given only without --record
 blocks list.csv --record X.AT2 ./X.AT2 --out DIR | --record names 'X.AT2' twice
 blocks list.csv --record list.csv --out DIR | --record is 'list.csv'
+blocks list.csv --record X.AT2 --vertical X.AT2 still.csv --out DIR | --vertical names 2; it must
 compare BLOCK --record X.AT2 --units m/s2 | it states g; --units must not be m/s2
 blocks list.csv --record still.csv --units g --out DIR | it is zero throughout, and must not be
 blocks list.csv --out DIR | --record requires an argument
