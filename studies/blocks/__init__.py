@@ -334,7 +334,7 @@ def command(
     *,
     record: Annotated[tuple[arguments.Place, ...], arguments.several],
     out: arguments.Out,
-    vertical: Annotated[tuple[arguments.Place, ...], arguments.several] = (),
+    vertical: Annotated[tuple[arguments.Place, ...] | None, arguments.several_or_none] = None,
     scale: Annotated[tuple[arguments.Positive, ...], arguments.several] = (1.0,),
     pga: arguments.Positive | None = None,
     unit: Annotated[Unit, arguments.one_of(Unit)] = "m",
@@ -378,20 +378,21 @@ def command(
     """
     arguments.refuse_repeats("--scale", scale)
     arguments.refuse_repeats("--record", [Path(path.name) for path in record])
-    if vertical and (named := len(vertical)) != len(record):
+    raised = vertical or ()
+    if raised and (named := len(raised)) != len(record):
         raise BadInputError(
             f"--vertical names {named}; it must name {len(record)}, as --record does"
         )
     read = partial(read_record, units=units, baseline=baseline, dt=record_dt, insist=False)
     grounds = {path.name: read(path) for path in record}
-    upward = dict(zip(grounds, map(partial(read, option="--vertical"), vertical), strict=False))
+    upward = dict(zip(grounds, map(partial(read, option="--vertical"), raised), strict=False))
     if pga is not None:
         with arguments.as_bad_input("--record scaled to --pga: "):
             upward = {it: upward[it].scaled(pga * GRAVITY / grounds[it].peak) for it in upward}
             grounds = {name: each.scaled_to(pga * GRAVITY) for name, each in grounds.items()}
     listed = read_cabinets(cabinets, unit, TAKEN)
     sources = tuple(dict.fromkeys(["exact", *sources]))
-    names = {name: path.name for name, path in zip(upward, vertical, strict=True)}
+    names = {name: path.name for name, path in zip(upward, raised, strict=True)}
     pairs = {name: BothWays(grounds[name], each) for name, each in upward.items()}
     found = jobs(listed, {**grounds, **pairs}, scale, sources, baseline or "", names)
     given = {"sources": sources, "scale": scale, "units": units, "baseline": baseline, "pga": pga}
