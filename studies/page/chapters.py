@@ -72,7 +72,8 @@ PUBLISHED_WITH = {
     "rocks": "--tests 150 --sources exact mujoco:default pybullet:default pymunk:default "
     "box2d:default dart:default rapier:default physx:default mujoco:recommended "
     "pybullet:recommended pymunk:recommended box2d:recommended dart:recommended "
-    "rapier:recommended physx:recommended mujoco:tuned",
+    "rapier:recommended physx:recommended mujoco:tuned physx:tuned dart:tuned box2d:tuned "
+    "pybullet:tuned",
     "scenes": "--time-limit 60 --sources engines engines:tuned engines:recommended engines:default",
 }
 """Folder -> arguments of the published run, where they are others than those of a full one."""
