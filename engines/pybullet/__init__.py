@@ -168,7 +168,7 @@ ENGINE = Engine(
             {Help.PHASES: {"by_phase": False}, Help.MARGIN: {"gap_by_step": False}},
             # with fewer, the impulses of an impact have not settled among all contacts when a step
             # ends: some bodies meet a step late, and the peak is up to 22 % too large
-            stacked={**STACKED, "iterations": 3000, "overlap": 1e-9},
+            stacked={**STACKED, "iterations": 10_000, "overlap": 1e-9},
         ),
     ),
     core=True,
