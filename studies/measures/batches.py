@@ -216,8 +216,7 @@ def in_warp(models: Sequence[Any], rows: FloatArray, most: int, device: str, run
     wp.synchronize()
     found = timed(run, rows, runs, began)
     bits, stuck = data.overflow.numpy(), int(mjw.OverflowType.ITERATIONS)
-    known_bits = stuck | int(mjw.OverflowType.LS_ITERATIONS)
-    found["overflows"] = int((bits & ~known_bits != 0).sum())
+    found["overflows"] = int((bits & ~(stuck | int(mjw.OverflowType.LS_ITERATIONS)) != 0).sum())
     found["unconverged"] = int((bits & stuck != 0).sum())
     return found | ({"name": on.name} if on.is_cuda else {})
 
