@@ -297,11 +297,10 @@ def look_of(xp: Any, planar: bool) -> Any:
         pull = xp.where(xp.abs(since) < 0.5, k[FIRST], pull)
         pull = xp.where(xp.abs(since - k[END] + 1.0) < 0.5, k[LAST], pull)
         pull = xp.where(xp.abs(since - k[END]) < 0.5, k[AFTER], pull)
-        weight = xp.where(s[COUNT] < 0.5, 0.5 * GRAVITY, GRAVITY)
-        goes_on = xp.where(state == RUNNING, 1.0, 0.0)
+        on, part = xp.where(state == RUNNING, 1.0, 0.0), xp.where(s[COUNT] < 0.5, 0.5, 1.0)
         last, swift = xp.where(looks, theta, s[THETA]), xp.where(looks, rate, s[RATE])
         peak, calm = xp.where(looks, peak, s[PEAK]), xp.where(looks, calm, s[CALM])
-        return s[COUNT] + 1.0, last, swift, peak, calm, state, goes_on * pull, goes_on * weight
+        return s[COUNT] + 1.0, last, swift, peak, calm, state, on * pull, on * part * GRAVITY
 
     return look
 
