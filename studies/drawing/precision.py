@@ -12,7 +12,7 @@ from engines.factors import BEST, DEFAULT
 from studies.drawing.facets import dot, error_scale, key, preset_dots, sheet
 from studies.drawing.styles import LOWEST, style_of, title_of
 from studies.kit.say import capital, duration
-from studies.measures.batches import NAMES, WARP, C
+from studies.measures.batches import MJX, MJX32, NAMES, WARP, C
 from studies.measures.costs import EXACT, exact_cost, joint, parts_of
 from studies.measures.presets import look_of
 
@@ -21,7 +21,7 @@ WRONG = 10.0
 GAP = 0.07
 """Least distance between two names, over the height of a panel."""
 LANDING = "landing"
-MARKERS = {C: "o", WARP: "s"}
+MARKERS = {C: "o", WARP: "s", MJX: "^", MJX32: "v"}
 """Way to step a batch -> its marker."""
 
 

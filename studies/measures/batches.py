@@ -1,10 +1,10 @@
-"""The paper's cases as one batch of worlds, stepped by MuJoCo Warp, or one by one in MuJoCo's C."""
+"""The paper's cases as one batch of worlds in MuJoCo Warp or MJX, or one by one in MuJoCo's C."""
 # All worlds take the same step on a base at rest, whose acceleration is each world's own gravity.
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from functools import cache
 from importlib import import_module
@@ -30,8 +30,9 @@ from studies.kit.say import one_line
 from studies.kit.tables import packed
 from studies.sources.registry import run_engine, scene_of
 
-EXACT, C, WARP = "exact", "c", "warp"
+EXACT, C, WARP, MJX, MJX32 = "exact", "c", "warp", "mjx, float64", "mjx, float32"
 NAMES = {EXACT: "the exact solution", C: "MuJoCo in C", WARP: "MuJoCo Warp"}
+NAMES |= {MJX: "MJX in float64", MJX32: "MJX in float32"}
 MEASURED = ("name", "steps", "compile_s", "wall_s", "cases_per_s", "overflows", "unconverged")
 SPREAD = ("bits_differ", "outcomes_differ", "largest_spread")
 EVERY = 960
@@ -39,6 +40,10 @@ CHUNK = 200
 """Steps between two looks at whether a world is undecided."""
 ROOM = {"nconmax": 8, "njmax": 32}
 """Contacts and rows of constraints for each world."""
+MOST, FINEST = 20, {"mjx, float64": 0.0, "mjx, float32": 1e-6}
+"""Most steps of MJX's solver and line search: a batch takes its worst world's; least tolerance."""
+UNUSED = "EULERDAMP", "DAMPER", "ACTUATION"
+"""Flags of what no model has: with them MJX takes accelerations from forces, wrong in float32."""
 TURNED = 1e-3
 """A turn at less than this part of alpha is a tremor of the contact."""
 
@@ -116,8 +121,10 @@ def found_of(asked: Mapping[str, Any]) -> Row:
          {"frame": "base", "step": dt_s * case.block.p, "settings": settings})
         for case in cases
     ]  # fmt: skip
-    if asked["backend"] == WARP:
-        return in_warp(posed, dt_s, asked["device"], asked["runs"])
+    if asked["backend"] != C:
+        models, rows, most = batch_of(posed, dt_s)
+        given = models, rows, most, asked["device"], asked["runs"]
+        return in_warp(*given) if asked["backend"] == WARP else in_mjx(*given, asked["backend"])
 
     def peak_of(block: RigidBlock, motion: Motion, preset: str, options: Row) -> tuple[float, int]:
         answer = run_engine(block, motion, engine="mujoco", preset=preset, **options)
@@ -153,12 +160,24 @@ def batch_of(posed: Sequence[tuple[Any, ...]], dt_s: float) -> tuple[list[Any], 
     return [built[each[0]] for each in posed], np.array(rows), math.ceil(most)
 
 
-def in_warp(posed: Sequence[tuple[Any, ...]], dt_s: float, device: str, runs: int) -> Row:
+def timed(run: Callable[[], FloatArray], rows: FloatArray, runs: int, began: float) -> Row:
+    """Return times, steps and peaks over alpha of runs, each of which returns what was seen."""
+    compile_s, peaks, times = perf_counter() - began, [], []
+    for _ in range(runs):
+        began = perf_counter()
+        seen = run()
+        times.append(perf_counter() - began)
+        states = [seen[:, STATE] == FALLEN, seen[:, STATE] == DECIDED]
+        peaks.append(np.select(states, [math.inf, seen[:, PEAK] / rows[:, ALPHA]], math.nan))
+    found = {"peaks": np.array(peaks), "wall_s": min(times), "compile_s": compile_s}
+    return {**found, "steps": int(seen[0, COUNT])}
+
+
+def in_warp(models: Sequence[Any], rows: FloatArray, most: int, device: str, runs: int) -> Row:
     """Step a batch in MuJoCo Warp, on a GPU by a graph of one step."""
     wp, mjw = import_module("warp"), import_module("mujoco_warp")
     wp.config.quiet = True
     wp.set_device(device)
-    models, rows, most = batch_of(posed, dt_s)
     began, worlds, one = perf_counter(), len(rows), models[0]
     able = {each.name for each in fields(mjw.Model) if getattr(each.type, "shape", ("",))[0] == "*"}
     of_all = {name: np.array([getattr(each, name) for each in models])
@@ -171,100 +190,137 @@ def in_warp(posed: Sequence[tuple[Any, ...]], dt_s: float, device: str, runs: in
         field.assign(values.reshape(field.numpy().shape))
     model.opt.gravity = wp.zeros(worlds, dtype=wp.vec3)
     data = mjw.make_data(one, nworld=worlds, **ROOM)
-    look, known, seen = look_in(wp, rows)
+    look, known, seen = kernel_of(wp, rows, one.nq == 3)
     places = np.broadcast_to(model.qpos0.numpy(), (worlds, one.nq))
 
     def step() -> None:
-        given = [known, seen, data.qpos, data.qvel, model.opt.gravity, int(one.nq == 3)]
-        wp.launch(look, dim=worlds, inputs=given)
+        wp.launch(look, dim=worlds, inputs=[known, seen, data.qpos, data.qvel, model.opt.gravity])
         mjw.step(model, data)
 
-    def run(steps: int, graph: Any) -> int:
+    def run() -> Any:
         mjw.reset_data(model, data)
         data.qpos.assign(places)
         seen.zero_()
-        for taken in range(steps):
+        for taken in range(most):
             if taken and taken % CHUNK == 0 and (seen.numpy()[:, STATE] > RUNNING).all():
-                return taken
+                break
             wp.capture_launch(graph) if graph else step()
-        return steps
+        return seen.numpy()
 
-    run(1, None)
+    step()
     graph, on = None, wp.get_device()
     if on.is_cuda:
         with wp.ScopedCapture() as capture:
             step()
         graph = capture.graph
     wp.synchronize()
-    compile_s, peaks, times = perf_counter() - began, [], []
-    for _ in range(runs):
-        began = perf_counter()
-        steps = run(most, graph)
-        wp.synchronize()
-        times.append(perf_counter() - began)
-        end = seen.numpy()
-        states = [end[:, STATE] == FALLEN, end[:, STATE] == DECIDED]
-        peaks.append(np.select(states, [math.inf, end[:, PEAK] / rows[:, ALPHA]], math.nan))
+    found = timed(run, rows, runs, began)
     bits, stuck = data.overflow.numpy(), int(mjw.OverflowType.ITERATIONS)
-    known_bits = stuck | int(mjw.OverflowType.LS_ITERATIONS)
-    return {
-        **{"peaks": np.array(peaks), "wall_s": min(times), "steps": steps, "compile_s": compile_s},
-        "overflows": int((bits & ~known_bits != 0).sum()),
-        "unconverged": int((bits & stuck != 0).sum()),
-        **({"name": on.name} if on.is_cuda else {}),
-    }
+    found["overflows"] = int((bits & ~(stuck | int(mjw.OverflowType.LS_ITERATIONS)) != 0).sum())
+    found["unconverged"] = int((bits & stuck != 0).sum())
+    return found | ({"name": on.name} if on.is_cuda else {})
 
 
-def look_in(wp: Any, rows: FloatArray) -> tuple[Any, Any, Any]:
+def in_mjx(
+    models: Sequence[Any], rows: FloatArray, most: int, device: str, runs: int, precision: str
+) -> Row:
+    """Step a batch in MJX, by one loop on the device."""
+    jax, mjx, mujoco = map(import_module, ("jax", "mujoco.mjx", "mujoco"))
+    jnp, one, worlds, on = jax.numpy, models[0], len(rows), jax.devices(device)[0]
+    began, kinds = perf_counter(), list({id(each): each for each in models}.values())
+    for each in kinds:
+        each.opt.iterations = each.opt.ls_iterations = MOST
+        each.opt.tolerance = max(each.opt.tolerance, FINEST[precision])
+        for flag in UNUSED:
+            each.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}"))
+
+    def step(model: Any, data: Any, gravity: Any) -> Any:
+        return mjx.step(model.replace(opt=model.opt.replace(gravity=gravity)), data)
+
+    def go_on(now: Any) -> Any:
+        return (now[2][COUNT, 0] < most) & (now[2][STATE] == RUNNING).any()
+
+    def advance(now: Any) -> Any:
+        (model, known), data, seen = now
+        *seen, pull, weight = look(known, seen, data.qpos.T, data.qvel.T)
+        gravity = jnp.stack([pull, jnp.zeros(worlds), -weight], axis=1)
+        return now[0], jax.vmap(step, (axes, 0, 0))(model, data, gravity), jnp.stack(seen)
+
+    with jax.enable_x64(precision == MJX), jax.default_device(on):
+        look, order = look_of(jnp, one.nq == 3), [kinds.index(each) for each in models]
+        put = [jax.tree.flatten(mjx.put_model(each)) for each in kinds]
+        values = [np.stack(each) for each in zip(*(leaves for leaves, _ in put), strict=True)]
+        varied = [0 if (each != each[0]).any() else None for each in values]
+        axes, pairs = put[0][1].unflatten(varied), zip(values, varied, strict=True)
+        model = [each[0 if axis is None else order] for each, axis in pairs]
+        places = jnp.array([each.qpos0 for each in models])
+        data = jax.vmap(lambda place: mjx.make_data(one).replace(qpos=place))(places)
+        given = jax.tree.map(jnp.asarray, (put[0][1].unflatten(model), rows.T))
+        begin = given, data, jnp.zeros((STATE + 1, worlds))
+        run = jax.jit(lambda now: jax.lax.while_loop(go_on, advance, now)[2]).lower(begin).compile()
+        found = timed(lambda: np.array(run(begin), float).T, rows, runs, began)
+    return found | ({"name": on.device_kind} if device != "cpu" else {})
+
+
+def look_of(xp: Any, planar: bool) -> Any:
+    """Return what looks at a world before a step, in the functions of a library for arrays."""
+
+    def look(k: Any, s: Any, q: Any, v: Any) -> Any:
+        if planar:
+            theta, rate = q[2], v[2]
+        else:
+            theta, rate = 2.0 * xp.atan2(q[5], q[3]), v[4]
+        since, size = s[COUNT] - k[REST], xp.abs(theta)
+        looks = xp.where(since > 0.5, s[STATE] == RUNNING, False)
+        side = xp.where(s[THETA] < 0.0, -1.0, 1.0)
+        turns = xp.where(s[RATE] * side > 0.0, rate * side <= 0.0, False)
+        mean, bend = 0.5 * (s[RATE] + rate), (s[RATE] - rate) * side / k[DT]
+        between = xp.where(turns, xp.abs(s[THETA]) + 0.5 * mean * mean / bend, size)
+        top = xp.where(between > size, between, size)
+        calm = xp.where(xp.abs(rate) > k[CALM_RATE], 0.0, s[CALM] + 1.0)
+        still, over = calm >= k[CALM_STEPS], since >= k[END]
+        late = xp.where(since >= k[END] + 1.0, xp.abs(s[THETA]) > TURNED * k[ALPHA], False)
+        propped = xp.where(still, size < PROPPED_PART * k[ALPHA], False)
+        ends = xp.where(xp.where(turns, late, False), True, xp.where(over, propped, False))
+        parts = xp.where(size > k[ALPHA], theta * rate > 0.0, False)
+        falls = xp.where(size >= LYING, True, xp.where(over, parts, False))
+        falls = xp.where(falls, True, xp.where(still, size > LYING_PART * LYING, False))
+        inward = 0.5 * k[WIDTH] * side * (1.0 - xp.cos(theta))
+        slid = xp.abs(q[0] - 0.5 * k[HEIGHT] * xp.sin(theta) - inward)
+        far = xp.where(size <= k[ALPHA], slid > SLIDE_WIDTHS * k[WIDTH], False)
+        state = xp.where(falls, FALLEN, xp.where(ends, DECIDED, s[STATE]))
+        state = xp.where(xp.isfinite(q[0] + theta + rate), xp.where(far, LOST, state), LOST)
+        state = xp.where(looks, state, s[STATE])
+        peak = xp.where(top > s[PEAK], top, s[PEAK])
+        pull = xp.where(since > 0.5, k[AMPLITUDE] * xp.sin(k[TURN] * since + k[PHASE]), 0.0)
+        pull = xp.where(since > k[END] - 0.5, 0.0, pull)
+        pull = xp.where(xp.abs(since) < 0.5, k[FIRST], pull)
+        pull = xp.where(xp.abs(since - k[END] + 1.0) < 0.5, k[LAST], pull)
+        pull = xp.where(xp.abs(since - k[END]) < 0.5, k[AFTER], pull)
+        on, part = xp.where(state == RUNNING, 1.0, 0.0), xp.where(s[COUNT] < 0.5, 0.5, 1.0)
+        last, swift = xp.where(looks, theta, s[THETA]), xp.where(looks, rate, s[RATE])
+        peak, calm = xp.where(looks, peak, s[PEAK]), xp.where(looks, calm, s[CALM])
+        return s[COUNT] + 1.0, last, swift, peak, calm, state, on * pull, on * part * GRAVITY
+
+    return look
+
+
+def kernel_of(wp: Any, rows: FloatArray, planar: bool) -> tuple[Any, Any, Any]:
     """Return Warp's kernel that looks at every world before a step, and what it knows and saw."""
-
-    def look(known: Any, seen: Any, q: Any, v: Any, gravity: Any, planar: int) -> None:
-        i = wp.tid()
-        k, s = known[i], seen[i]
-        theta, rate = float(q[i, 2]), float(v[i, 2])  # numbers that Warp lets vary
-        if planar == 0:
-            theta, rate = 2.0 * wp.atan2(q[i, 5], q[i, 3]), float(v[i, 4])
-        since, size = s[COUNT] - k[REST], wp.abs(theta)
-        if since > 0.5 and s[STATE] == RUNNING:
-            side = wp.where(s[THETA] < 0.0, -1.0, 1.0)
-            turns = s[RATE] * side > 0.0 and rate * side <= 0.0
-            top = float(size)
-            if turns:
-                mean, bend = 0.5 * (s[RATE] + rate), (s[RATE] - rate) * side / k[DT]
-                top = wp.max(size, wp.abs(s[THETA]) + 0.5 * mean * mean / bend)
-            s[PEAK] = wp.max(s[PEAK], top)
-            s[CALM] = wp.where(wp.abs(rate) > k[CALM_RATE], 0.0, s[CALM] + 1.0)
-            still, over = s[CALM] >= k[CALM_STEPS], since >= k[END]
-            turned = turns and wp.abs(s[THETA]) > TURNED * k[ALPHA] and since >= k[END] + 1.0
-            if turned or (over and still and size < PROPPED_PART * k[ALPHA]):
-                s[STATE] = DECIDED
-            lies = size >= LYING or (still and size > LYING_PART * LYING)
-            if lies or (over and size > k[ALPHA] and theta * rate > 0.0):
-                s[STATE] = FALLEN
-            inward = 0.5 * k[WIDTH] * side * (1.0 - wp.cos(theta))
-            slid = q[i, 0] - 0.5 * k[HEIGHT] * wp.sin(theta) - inward
-            if size <= k[ALPHA] and wp.abs(slid) > SLIDE_WIDTHS * k[WIDTH]:
-                s[STATE] = LOST
-            if not wp.isfinite(q[i, 0] + theta + rate):
-                s[STATE] = LOST
-            s[THETA] = theta
-            s[RATE] = rate
-        pull = wp.where(since > 0.5, k[AMPLITUDE] * wp.sin(k[TURN] * since + k[PHASE]), 0.0)
-        pull = wp.where(since > k[END] - 0.5, 0.0, pull)
-        pull = wp.where(wp.abs(since) < 0.5, k[FIRST], pull)
-        pull = wp.where(wp.abs(since - k[END] + 1.0) < 0.5, k[LAST], pull)
-        pull = wp.where(wp.abs(since - k[END]) < 0.5, k[AFTER], pull)
-        weight = wp.where(s[COUNT] < 0.5, 0.5 * GRAVITY, GRAVITY)
-        goes_on = wp.where(s[STATE] == RUNNING, 1.0, 0.0)
-        gravity[i] = goes_on * wp.vec3(pull, 0.0, -weight)
-        s[COUNT] = s[COUNT] + 1.0
-        seen[i] = s
-
     of_world, of_sight = (wp.types.vector(length, wp.float32) for length in (rows.shape[1], 6))
-    look.__annotations__ = {
-        **{"known": wp.array(dtype=of_world), "seen": wp.array(dtype=of_sight)},
-        **dict.fromkeys(("q", "v"), wp.array2d(dtype=float)),
-        **{"gravity": wp.array(dtype=wp.vec3), "planar": int},
-    }
+    numbers, places = wp.array(dtype=float), wp.array2d(dtype=float)
+    look = look_of(wp, planar)
+    look.__annotations__ = {"k": of_world, "s": of_sight, "q": numbers, "v": numbers}
+    look = wp.func(look)
+
+    def look_at(known: Any, seen: Any, q: Any, v: Any, gravity: Any) -> None:
+        i = wp.tid()
+        n, a, b, c, d, e, pull, weight = look(known[i], seen[i], q[i], v[i])
+        seen[i] = of_sight(n, a, b, c, d, e)
+        gravity[i] = wp.vec3(pull, 0.0, -weight)
+
+    worlds, sights, pulls = (wp.array(dtype=kind) for kind in (of_world, of_sight, wp.vec3))
+    kinds = worlds, sights, places, places, pulls
+    look_at.__annotations__ = dict(zip(look_at.__annotations__, kinds, strict=False))
     known = wp.array(rows.astype(np.float32), dtype=of_world)
-    return wp.kernel(look), known, wp.zeros(len(rows), dtype=of_sight)
+    return wp.kernel(look_at), known, wp.zeros(len(rows), dtype=of_sight)

@@ -8,7 +8,7 @@ import pytest
 
 from studies import batch, respond
 from studies.kit.tables import unpacked
-from studies.measures.batches import all_cases, measure, numbers_of, spread
+from studies.measures.batches import MJX, C, all_cases, found_of, measure, numbers_of, spread
 
 
 def test_a_quick_batch_in_c_is_off_by_what_single_runs_are():
@@ -34,3 +34,11 @@ def test_bits_outcomes_and_peaks_that_differ_are_counted():
         "outcomes_differ": 1,
         "largest_spread": pytest.approx(0.1),
     }
+
+
+def test_worlds_of_mjx_in_float64_are_those_of_c():
+    pytest.importorskip("mujoco.mjx")
+    asked = {"device": "cpu", "preset": "tuned, impratio 100", "dt_ms": 4, "worlds": 4, "runs": 1}
+    plain, batched = (found_of({**asked, "backend": way})["peaks"] for way in (C, MJX))
+    assert np.isfinite(plain).sum() >= 2
+    assert batched == pytest.approx(plain, rel=1e-8)
