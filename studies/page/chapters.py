@@ -74,7 +74,8 @@ PUBLISHED_WITH = {
     "pybullet:recommended pymunk:recommended box2d:recommended dart:recommended "
     "rapier:recommended physx:recommended mujoco:tuned physx:tuned dart:tuned box2d:tuned "
     "pybullet:tuned",
-    "scenes": "--time-limit 180 --sources engines engines:tuned engines:recommended engines:default",
+    "scenes": "--time-limit 180 --sources engines engines:tuned engines:recommended "
+    "engines:default",
 }
 """Folder -> arguments of the published run, where they are others than those of a full one."""
 CHAPTERS: dict[str, tuple[Part, ...]] = {
