@@ -61,6 +61,8 @@ def rows(*names):
         for name, system, motion, options in cases():
             if source.startswith("dart") and isinstance(system, RockingFrame):
                 continue  # they depend on where in memory its bodies are
+            if (source, name) == ("pybullet:landing", "frame 4 4.0"):
+                continue  # it takes five minutes
             try:
                 it = respond(source, system, motion, **options)
             except ValueError:  # the source does not take the case

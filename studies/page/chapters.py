@@ -66,6 +66,7 @@ PUBLISHED_WITH = {
     "precision": "--sources exact rk45 dop853 radau lsoda rk4 average-acceleration housner "
     "modified onset-matched engines",
     "batch": "--device cuda",
+    "impratio": "--device cpu",
     "contact": "--engines pybullet mujoco pymunk box2d dart rapier drake newton physx",
     "stability": "--sources exact rk4 average-acceleration dop853 radau engines engines:tuned "
     "engines:recommended engines:default",
@@ -74,7 +75,7 @@ PUBLISHED_WITH = {
     "pybullet:recommended pymunk:recommended box2d:recommended dart:recommended "
     "rapier:recommended physx:recommended mujoco:tuned physx:tuned dart:tuned box2d:tuned "
     "pybullet:tuned",
-    "scenes": "--time-limit 180 --sources engines engines:tuned engines:recommended "
+    "scenes": "--time-limit 600 --sources engines engines:tuned engines:recommended "
     "engines:default",
 }
 """Folder -> arguments of the published run, where they are others than those of a full one."""
@@ -111,6 +112,12 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
     "Error against run time": (
         Part("precision", "precision"),
         Part("batch", "batch", weaker="64 cases of 960; no GPU."),
+        Part(
+            *("impratio", "batch", "Does single precision hold the answer of a stiff contact?"),
+            always="--impratio",
+            quick="",
+            weaker="MuJoCo in C alone, in double precision.",
+        ),
     ),
     "Contact models": (
         Part("advice", "advise", quick="--quick --engines pybullet mujoco"),
