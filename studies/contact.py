@@ -135,7 +135,10 @@ def _less(pasted: Variant) -> Iterator[Variant]:
     for names in dict.fromkeys(map(tuple, kin)):
         level = " and ".join(names).replace("_", " ")
         setting = {name: default[name] for name in names}
-        yield replace(pasted, factor=factors.LEFT_OUT, level=level, settings=setting)
+        trap = next((it.traps.get(factors.BEST, "") for it in declared.factors
+                     if names[0] in it.settings), "")  # fmt: skip
+        left = replace(pasted, factor=factors.LEFT_OUT, level=level)
+        yield replace(left, settings=setting, trap=trap)
 
 
 def _levels(plain: Variant, factor: factors.Factor) -> Iterator[Variant]:
