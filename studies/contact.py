@@ -130,15 +130,13 @@ def _less(pasted: Variant) -> Iterator[Variant]:
     declared = ENGINES[pasted.engine]
     mine, default = (asdict(declared.preset(name).settings) for name in (PASTED, factors.DEFAULT))
     apart = [name for name in mine if mine[name] != default[name] and name != "friction"]
-    together = {name: factor.settings for factor in declared.factors for name in factor.settings}
-    kin = ([each for each in apart if each in together.get(name, (name,))] for name in apart)
-    for names in dict.fromkeys(map(tuple, kin)):
-        level = " and ".join(names).replace("_", " ")
-        setting = {name: default[name] for name in names}
-        trap = next((it.traps.get(factors.BEST, "") for it in declared.factors
-                     if names[0] in it.settings), "")  # fmt: skip
-        left = replace(pasted, factor=factors.LEFT_OUT, level=level)
-        yield replace(left, settings=setting, trap=trap)
+    of = {name: factors.Factor(name, (name,)) for name in apart}
+    of |= {name: factor for factor in declared.factors for name in factor.settings}
+    kin = (tuple(each for each in apart if each in of[name].settings) for name in apart)
+    for names in dict.fromkeys(kin):
+        setting, trap = {name: default[name] for name in names}, of[names[0]].traps
+        left = replace(pasted, factor=factors.LEFT_OUT, level=" and ".join(names).replace("_", " "))
+        yield replace(left, settings=setting, trap=trap.get(factors.BEST, ""))
 
 
 def _levels(plain: Variant, factor: factors.Factor) -> Iterator[Variant]:

@@ -14,9 +14,9 @@ from records import write_record
 from analytic import Outcome, Record, RigidBlock, SlidingBlock, simulate
 from studies import blocks
 from studies.__main__ import run
-from studies.blocks import WIDTH, strength
 from studies.blocks.cabinets import read_cabinets
 from studies.blocks.fragility import fragility, lognormal
+from studies.blocks.margins import WIDTH, strength
 from studies.kit.tables import read_table
 
 HEAD = "name,width,height,friction\n"
