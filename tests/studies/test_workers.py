@@ -1,4 +1,7 @@
-"""Processes: whatever one does is a row, and its run goes on; what ends a command ends it well."""
+"""Processes: whatever one does is a row, and its run goes on; what ends a command ends it well.
+
+And engines of other packages: what cannot be loaded is a line; rows depend on their code.
+"""
 
 import math
 import os
@@ -12,6 +15,7 @@ from pathlib import Path
 
 import hostile
 import pytest
+import rocking_moreau
 from commanding import CASE, python
 from given import BLOCK, FULL_SINE
 
@@ -20,10 +24,12 @@ from engines.declaration import Stepping
 from engines.registry import FURTHER
 from engines.run.run import simulate_world
 from engines.scene import Scene
+from studies import score
+from studies.kit.identity import code_in, maker_of
 from studies.kit.jobs import Job, Question, answer
 from studies.kit.run import local
 from studies.kit.workers import Lost, answers
-from studies.sources.registry import SOURCES, Source, announce
+from studies.sources.registry import SOURCES, Source, announce, resolve
 
 pytestmark = pytest.mark.processes
 
@@ -192,3 +198,41 @@ def test_settings_of_other_programs_change_nothing(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.count("\n") == 1
     assert plot.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.fixture
+def announced(alone, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+
+
+@pytest.mark.parametrize(
+    ("source", "known", "words"),
+    [
+        ("import sys; sys.exit()", "", "cannot be loaded from mine:World: SystemExit"),
+        ("def World(scene): pass", "", "it takes (scene), and what builds a world takes"),
+        ("import os; World = os.system", "", "neither a declaration nor what builds a world"),
+        ("import sys; sys.exit()", "mine=mine:World", "engine 'mine'"),
+        ("World = 7", "mine=mine:World", "engine 'mine'"),
+        ("", "mine:World", "ROCKING_ENGINES holds 'mine:World'; it must be like"),
+    ],
+)
+def test_what_cannot_be_loaded_is_refused_in_a_line(source, known, words, tmp_path):
+    """Where it is asked for at a place, and where it was announced and others are asked."""
+    (tmp_path / "mine.py").write_text(source)
+    asked = [*("score", "mine:World"), "--out", tmp_path / "out"]
+    if known:
+        asked = ["compare", *CASE, "--sources", "exact"]
+    done = python("-m", "studies", *asked, path=[tmp_path], env={FURTHER: known})
+    assert (done.returncode, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert words in line and ("ENGINE: engine 'mine:World'" in line) == (not known)
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_rows_of_an_engine_at_a_place_depend_on_its_code(announced):
+    Path("mine.py").write_text(Path(rocking_moreau.__file__).read_text().replace("moreau", "mine"))
+    assert score.known("mine:ENGINE") == "mine"
+    made = maker_of(resolve("mine"), answer)
+    assert made["code of mine"] == code_in(Path("mine.py").absolute())
+    assert "code of mine" not in maker_of(resolve("exact"), answer)
