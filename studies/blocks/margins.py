@@ -1,7 +1,5 @@
 """How strong a motion must be: factors on it that lift a block, overturn it, or lift it off."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

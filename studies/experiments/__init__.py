@@ -1,7 +1,5 @@
 """Bodies that were measured: who predicts what they did?"""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path

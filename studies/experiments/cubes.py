@@ -285,6 +285,6 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw the losses and the shares of right faces."""
-    from studies.drawing.cubes import draw_cubes
+    from studies.drawing.experiments import draw_cubes
 
     return {"cubes": draw_cubes(tables["settings"])}

@@ -248,6 +248,6 @@ def shown(tables: Tables) -> Tables:
 
 def figures(tables: Tables) -> Figures:
     """Draw what fell over PGA and PGV, and the ROC curves."""
-    from studies.drawing.rocks import draw_rocks
+    from studies.drawing.experiments import draw_rocks
 
     return {"rocks": draw_rocks(tables, SCORES, lost_by_all(tables))}
