@@ -40,11 +40,12 @@ SOLVERS = (XPBD, "padmm", "dvi")
 class NewtonSettings:
     """Settings of Newton, by default those of its own example of a belt; None leaves its own."""
 
-    # of corners, four small spheres where those at the base are
+    # of corners, small spheres where those are that touch: four of a face, or two if planar
     geometry: str = setting("box", names=("box", "corners"))
+    planar: bool = False
     friction: float = setting(1.0, least=0.0)
     solver: str = setting(XPBD, names=SOLVERS)  # Kamino has the other two, solvers of dynamics
-    # of "xpbd", whose own are 2, and "padmm"; "dvi" has none
+    # the library's own are 2 of "xpbd", 200 of "padmm", 24 of "dvi"
     iterations: int | None = setting(least=1)
     # part of a contact's correction that "xpbd" makes in an iteration; its own is 0.8
     relaxation: float | None = setting(above=0.0, most=2.0)
@@ -52,9 +53,6 @@ class NewtonSettings:
     weighting: bool | None = None
     # part of a penetration that Kamino corrects in a step, by a velocity; its own is 0.01
     baumgarte: float | None = setting(least=0.0, most=1.0)
-    # penetration over the width that Kamino leaves as it is; its own is 1e-6 m
-    depth: float | None = setting(least=0.0)
-    tolerance: float | None = setting(above=0.0)  # of "padmm"; its own is 1e-6
     # of block and base; "xpbd" heeds it where it is told to, as here
     restitution: float | None = setting(least=0.0, most=1.0)
     corner_radius: float = setting(1e-3, above=0.0)  # over the width
@@ -62,8 +60,6 @@ class NewtonSettings:
 
     def __post_init__(self) -> None:
         check(self)
-        if self.iterations is not None and self.solver == "dvi":
-            raise ValueError(f"iterations are {self.iterations!r}; the solver 'dvi' takes none")
 
 
 class Model(NamedTuple):
@@ -120,7 +116,7 @@ def build(newton: Any, warp: Any, scene: Scene, s: NewtonSettings) -> Model:
     model.rigid_contact_max = most
     pipeline = newton.CollisionPipeline(model, rigid_contact_max=most)
     contacts = pipeline.contacts()
-    solver = new_solver(newton, model, s, scene.system.width)
+    solver = new_solver(newton, model, s)
     return Model(newton, model, pipeline, contacts, solver, model.state(), model.state(), moving)
 
 
@@ -140,7 +136,7 @@ def add_body(
         builder.add_shape_box(own, hx=x, hy=y, hz=z, cfg=shape)
         return
     radius = s.corner_radius * body.width
-    for corner in touching_spheres(scene, number, radius, planar=False):
+    for corner in touching_spheres(scene, number, radius, planar=s.planar):
         there = warp.transform(corner, UPRIGHT)
         builder.add_shape_sphere(own, xform=there, radius=radius, cfg=shape)
 
@@ -150,7 +146,7 @@ def diagonal(warp: Any, first: float, second: float, third: float) -> Any:
     return warp.mat33(first, 0.0, 0.0, 0.0, second, 0.0, 0.0, 0.0, third)
 
 
-def new_solver(newton: Any, model: Any, s: NewtonSettings, width: float) -> Any:
+def new_solver(newton: Any, model: Any, s: NewtonSettings) -> Any:
     """Return the solver of a model."""
     if s.solver == XPBD:
         wanted = {
@@ -163,12 +159,10 @@ def new_solver(newton: Any, model: Any, s: NewtonSettings, width: float) -> Any:
     config = newton.solvers.SolverKamino.Config.from_model(model, dynamics_solver=s.solver)
     if s.baumgarte is not None:
         config.constraints.gamma = s.baumgarte
-    if s.depth is not None:
-        config.constraints.delta = s.depth * width
-    if s.solver == "padmm" and s.iterations is not None:
+    if s.iterations is not None and s.solver == "padmm":
         config.padmm.max_iterations = s.iterations
-    for name in ("primal", "dual", "compl") if s.solver == "padmm" and s.tolerance else ():
-        setattr(config.padmm, f"{name}_tolerance", s.tolerance)
+    elif s.iterations is not None:
+        config.dvi.max_alternating_iterations = s.iterations
     return newton.solvers.SolverKamino(model, config=config)
 
 
@@ -349,6 +343,10 @@ iterations | 20, free dominoes; enable_restitution, which is left off | {DOMINOE
 
 TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)
 
+STACKED = {"geometry": "corners", "planar": True, "iterations": 100}
+"""Where bodies rest on others: two boxes meet at another depth than a box and the floor, and the
+impacts at both ends of a column fall into different steps."""
+
 OVERDONE = "both corners correct all of a penetration that they share"
 
 FACTORS = (
@@ -378,7 +376,7 @@ ENGINE = Engine(
         NAIVE,
         NAIVE.at_rest(),
         NAIVE.recommended(*RECOMMENDED, step_s=1.0 / 600.0, iterations=20),
-        Preset(name="tuned", settings=TUNED, step=1e-3),
+        Preset(name="tuned", settings=TUNED, step=1e-3, stacked=STACKED),
     ),
     precision=Precision.SINGLE,
     shortest_step=3e-6,

@@ -118,7 +118,9 @@ def _prepare() -> None:
     for number in range(3):
         os.dup2(nowhere, number)
     if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG: it ends with its parent
+        libc = ctypes.CDLL(None)
+        libc.prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG: it ends with its parent
+        libc.mallopt(-3, 1 << 20)  # M_MMAP_THRESHOLD: what is large is given back when it is freed
         known = [each for each in resource.getrlimit(resource.RLIMIT_DATA) if each >= 0]
         bound = min([MEMORY_BYTES, *known])
         resource.setrlimit(resource.RLIMIT_DATA, (bound, bound))

@@ -24,7 +24,7 @@ from studies.cases.drawn import LEAST_NORMAL, RandomFrame, draw
 
 STACKERS = ("pybullet", "box2d", "dart")
 """Engines that are helped where frames land, or have code of their own for it."""
-STACKING = [name for name, engine in HERE.items() if engine.stacks and name != "newton"]
+STACKING = [name for name, engine in HERE.items() if engine.stacks]
 BOX = SlidingBlock(width=1.0, height=0.5, friction=0.2)
 
 

@@ -161,6 +161,19 @@ def test_a_soft_contact_that_leans_with_its_load_has_not_lifted(leans):
     assert found.peak_ratio == pytest.approx(most / BLOCK.alpha, rel=1e-3)
 
 
+def test_a_contact_that_trembles_for_good_ends_a_run():
+    """It turns faster than a block at rest may, and never lifts it."""
+    motion, faster = pulse(0.9, 3.0, 2), 1e3 * BLOCK.p
+
+    class Trembling(ScriptedWorld):
+        def script(self, time, rate_s):
+            return 1e-5 * math.sin(faster * time), 1e-5 * faster * math.cos(faster * time)
+
+    found = seen(motion, kind=Trembling, raised_m=BASES["sunk"])
+    assert found.outcome is Outcome.AT_REST
+    assert found.steps == pytest.approx((motion.duration * BLOCK.p + 8.0) / 0.01, abs=2)
+
+
 def test_a_block_held_just_short_of_its_side_lies():
     """What lies on a soft contact never reaches pi/2."""
 
