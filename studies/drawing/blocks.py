@@ -56,9 +56,7 @@ def draw_blocks(lines: pd.DataFrame, scales: Sequence[float], title: str) -> Fig
             asked = axes.axvline(scale, label="scale asked for", zorder=0.5, color="#666666",
                                  linewidth=0.8, linestyle=(0, (5, 4)))  # fmt: skip
         axes.set(xscale="log", ylim=(len(names) - 0.4, -0.6), xlabel="factor on the record  [–]")
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.xaxis.set_minor_formatter("{x:g}")
-        axes.tick_params(axis="x", which="both", labelsize=9)
+        _name_factors(axes)
         axes.set_yticks(range(len(names)), map(_short, names), fontsize=8)
         axes.grid(axis="y", alpha=0.2)
         axes.set_title(title + kept, fontsize=10, wrap=True)
@@ -112,10 +110,16 @@ def draw_fragility(fits: pd.DataFrame, lines: pd.DataFrame) -> Figure:
         axes.legend(fontsize=8, frameon=False, loc="lower right")
         axes.set(xscale="log", ylim=(0.0, 1.0), xlabel="factor on the record  [–]",
                  ylabel="part of the records that overturn")  # fmt: skip
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.xaxis.set_minor_formatter("{x:g}")
+        _name_factors(axes)
         axes.grid(alpha=0.2)
     return drawing
+
+
+def _name_factors(axes: Axes) -> None:
+    """Name the powers of ten, and between them only what leaves room."""
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in "23457" else "")
+    axes.tick_params(axis="x", which="both", labelsize=9)
 
 
 def _draw_line(axes: Axes, line: dict[Any, Any], level: float, place: int) -> Line2D:
