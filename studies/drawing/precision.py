@@ -117,15 +117,16 @@ def draw_batch(lines: pd.DataFrame) -> Figure:
         look: dict[str, Any] = {"color": colour, "marker": marker}
         along = mine[mine["worlds"] == mine["worlds"].mode().max()].sort_values("dt_ms")
         axes.plot(along["cases_per_s"], along["median_error"], **look)
-        for line in mine.drop(along.index).query("runs == 1").to_dict("records"):
+        for line in mine.drop(along.index).to_dict("records"):
             place = line["cases_per_s"], line["median_error"]
             axes.plot(*place, fillstyle="none", **look)
             axes.annotate(
-                f"{line['worlds']}", place, (0, 7), textcoords="offset points", ha="center"
+                f"{line['worlds']}", place, (0, -14), textcoords="offset points", ha="center"
             )
     for line in lines[~stepped].to_dict("records"):
         axes.axvline(line["cases_per_s"], color="black", linewidth=2.0)
-        axes.annotate("exact solution ", (line["cases_per_s"], 1.3e-5), ha="right")
+        words = f"exact solution, \n{line['name']} "
+        axes.annotate(words, (line["cases_per_s"], 1.3e-5), ha="right")
     error_scale(axes.yaxis, 1e-5, 1.0, 1)
     axes.grid(alpha=0.25)
     ways = [dot(NAMES[name], MARKERS[name]) for name in usable["backend"].unique()]

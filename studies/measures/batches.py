@@ -8,7 +8,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from functools import cache
 from importlib import import_module
+from itertools import islice
 from time import perf_counter
+from timeit import repeat
 from typing import Any
 
 import numpy as np
@@ -24,6 +26,7 @@ from engines.run.steps import begin_of
 from engines.run.watch import LYING, LYING_PART, PROPPED_PART, REST_RATE, REST_TIME, SLIDE_WIDTHS
 from engines.scene import FREE_ROCKING
 from engines.world import FloatArray
+from studies.cases.drawn import RandomCase, draw
 from studies.cases.paper import Case, sweep_cases
 from studies.kit.jobs import Job, Row
 from studies.kit.say import one_line
@@ -33,9 +36,16 @@ from studies.sources.registry import run_engine, scene_of
 EXACT, C, WARP, MJX, MJX32 = "exact", "c", "warp", "mjx, float64", "mjx, float32"
 NAMES = {EXACT: "the exact solution", C: "MuJoCo in C", WARP: "MuJoCo Warp"}
 NAMES |= {MJX: "MJX in float64", MJX32: "MJX in float32"}
+BATCHED = {WARP: ("mujoco_warp", "warp"), **dict.fromkeys((MJX, MJX32), ("mujoco.mjx", "mjx"))}
+"""What steps a batch -> its module, and the extra that installs it."""
 MEASURED = ("name", "steps", "compile_s", "wall_s", "cases_per_s", "overflows", "unconverged")
 SPREAD = ("bits_differ", "outcomes_differ", "largest_spread")
-EVERY = 960
+PAPER, RANDOM = "paper", "random"
+EVERY = {PAPER: 960, RANDOM: 500}
+"""Cases of a kind."""
+SEED = 1
+SMALL, LARGE, LONG = 1.8891, 3.6279, 37.494
+"""Bounds of p [rad/s], and of the time to 8/p after the pulse [s], over the paper's cases."""
 CHUNK = 200
 """Steps between two looks at whether a world is undecided."""
 ROOM = {"nconmax": 8, "njmax": 32}
@@ -58,23 +68,27 @@ RUNNING, DECIDED, FALLEN, LOST = 0.0, 1.0, 2.0, 3.0
 
 
 @cache
-def all_cases() -> tuple[Case, ...]:
-    """Return the paper's cases."""
-    return tuple(sweep_cases([6, 7, 8, 9]))
+def all_cases(kind: str = PAPER) -> tuple[Case | RandomCase, ...]:
+    """Return the paper's cases, or random ones that are no smaller, larger or longer."""
+    if kind == PAPER:
+        return tuple(sweep_cases([6, 7, 8, 9]))
+    drawn = ((case, case.block.p) for case in draw(SEED))
+    near = (case for case, p in drawn if SMALL < p < LARGE and case.motion.duration + 8 / p < LONG)
+    return tuple(islice(near, EVERY[kind]))
 
 
 @cache
-def exact_peaks() -> FloatArray:
+def exact_peaks(kind: str = PAPER) -> FloatArray:
     """Return the exact peaks of all cases over alpha, inf where a block overturns."""
     posed = [(case.block.alpha, case.amplitude_g, case.omega_over_p, case.motion.half_cycles)
-             for case in all_cases()]  # fmt: skip
+             for case in all_cases(kind)]  # fmt: skip
     return peak_ratios(*np.array(posed, float).T)[0]
 
 
-def numbers_of(worlds: int) -> NDArray[np.intp]:
+def numbers_of(worlds: int, every: int) -> NDArray[np.intp]:
     """Return which cases some worlds take: all of them, again and again, if there are fewer."""
-    most = min(worlds, EVERY)
-    return np.resize(((np.arange(most) + 0.45) * EVERY / most).astype(int), worlds)
+    most = min(worlds, every)
+    return np.resize(((np.arange(most) + 0.45) * every / most).astype(int), worlds)
 
 
 def measure(job: Job) -> Row:
@@ -87,7 +101,7 @@ def measure(job: Job) -> Row:
     except Exception as error:
         return {"outcome": Outcome.FAILED.value, "message": one_line(error)}
     peaks = found.pop("peaks")
-    first = peaks[0][:EVERY]
+    first = peaks[0][: EVERY[asked["case_set"]]]
     return {
         **{"outcome": "measured", "message": "", **found},
         "cases_per_s": asked["worlds"] / found["wall_s"],
@@ -108,14 +122,14 @@ def spread(found: FloatArray, first: FloatArray) -> Row:
 
 def found_of(asked: Mapping[str, Any]) -> Row:
     """Step a batch; return times, and peaks over alpha of each run and world, inf of a fall."""
+    kind, numbers = asked["case_set"], numbers_of(asked["worlds"], EVERY[asked["case_set"]])
     if asked["backend"] == EXACT:
-        exact_peaks()  # what is compiled is loaded
-        began = perf_counter()
-        peaks = exact_peaks.__wrapped__()[None]
-        return {"peaks": peaks, "wall_s": perf_counter() - began}
+        peaks = exact_peaks(kind)[None]  # what is compiled is loaded
+        times = repeat(lambda: exact_peaks.__wrapped__(kind), number=1, repeat=20)
+        return {"peaks": peaks, "wall_s": min(times)}
     preset, _, ratio = asked["preset"].partition(", impratio ")
     dt_s, settings = 1e-3 * asked["dt_ms"], {"impratio": float(ratio)} if ratio else {}
-    cases = [all_cases()[number] for number in numbers_of(asked["worlds"])]
+    cases = [all_cases(kind)[number] for number in numbers]
     posed = [
         (case.block, case.motion, preset,
          {"frame": "base", "step": dt_s * case.block.p, "settings": settings})
