@@ -129,18 +129,20 @@ def finding(tables: Tables) -> str:
     repeated = tables["spread"].query("runs > 1")
     drawn = batch.query("case_set == @RANDOM and preset == 'recommended'")
     said = {
-        "Cases per second at a median error below 1 %": [
-            f"{NAMES[line['backend']]} {line['cases_per_s']:,.0f} on {on[line['device']]}"
-            for line in best.to_dict("records")
-        ],
+        f"Cases per second at a median error below 1 %, {on[device]}": [
+            f"{NAMES[it['backend']]} {it['cases_per_s']:,.0f}" for it in lines.to_dict("records")
+        ]
+        for device, lines in best.groupby("device")
+    }
+    said |= {
         f"Worlds that differ by a bit in {repeated['runs'].max()} equal runs": [
-            f"{NAMES[line['backend']]} {line['bits_differ']:.0f} of {line['worlds']}"
-            for line in repeated.to_dict("records")
+            f"{NAMES[it['backend']]} {it['bits_differ']:.0f} of {it['worlds']}"
+            for it in repeated.to_dict("records")
         ],
         f"Wrong outcomes in {EVERY[RANDOM]} random cases and the median error, recommended": [
-            f"{NAMES[line['backend']]} {sum(line[kind] for kind in KINDS):.0f} and "
-            f"{part(line['median_error'])}"
-            for line in drawn.to_dict("records")
+            f"{NAMES[it['backend']]} {sum(it[kind] for kind in KINDS):.0f} and "
+            f"{part(it['median_error'])}"
+            for it in drawn.to_dict("records")
         ],
     }
     sentences = [f"{head}: {'; '.join(items)}." for head, items in said.items() if items]
