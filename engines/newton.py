@@ -344,8 +344,7 @@ iterations | 20, free dominoes; enable_restitution, which is left off | {DOMINOE
 TUNED = NewtonSettings(solver="dvi", friction=NO_JAM, baumgarte=0.0)
 
 STACKED = {"geometry": "corners", "planar": True, "iterations": 100}
-"""Where bodies rest on others: two boxes meet at another depth than a box and the floor, and the
-impacts at both ends of a column fall into different steps."""
+"""Where bodies rest on others: two boxes meet at another depth than a box and the floor."""
 
 OVERDONE = "both corners correct all of a penetration that they share"
 

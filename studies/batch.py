@@ -187,9 +187,9 @@ STUDY = Study(
     question="How many cases a second does a batch of worlds give, at which error?",
     help="""The paper's 960 cases as worlds of MuJoCo Warp and MJX; MuJoCo in C beside them.
 
-All take equal steps on a base at rest. With --device also 500 random cases, 20 equal runs, and up
-to which impratio a batch has answers. On an H100, 1024 worlds of an earlier MJX at 1 ms did not end
-within 160 s. Ten minutes without --device; an hour more with it on a CPU.""",
+All take equal steps on a base at rest; also 500 random cases, 20 equal runs, and other values of
+impratio. On an H100, 1024 worlds of an earlier MJX at 1 ms did not end within 160 s. Ten minutes
+without --device; an hour more with it on a CPU.""",
     options=Options,
     quick="64 cases, and one step of each preset.",
     captions={

@@ -292,10 +292,9 @@ STUDY = Study(
 
 A frame is a beam on two to four free columns, which rock like a block of another size and
 restitution. A sliding block slips under a pulse, or is held below the onset; it is right only if
-the block stays flat and on the base. 60 frames and 60 slides are random; on the frames settings of
-PyBullet, Box2D and Newton were mended, on the slides none. The floor moves in each way that an
-engine offers, and should carry a block along. Landing steps apply to frames only. A row says what
-an engine cannot do. Takes two hours.""",
+the block stays flat and on the base. 60 frames and 60 slides are random; settings of PyBullet,
+Box2D and Newton were mended on the frames. The floor moves in each way that an engine offers, and
+should carry a block along. Landing steps apply to frames only. Takes two hours.""",
     sources=core_sources("default", "tuned", "landing"),
     quick="Three frames and three slides.",
     needed=lambda rows: [row for row in rows if row["reason"] != Reason.UNAVAILABLE.name],

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from engines.run.rows import TIME, Row, copy, extrapolated, put, row_of
-from engines.scene import Body, Scene
+from engines.scene import FREE_ROCKING, Body, Scene
 from engines.world import FloatArray, Moment, Pose, Resolution
 
 RESOLVED_ROWS = 3
@@ -40,9 +40,6 @@ more than it leans, has a skin: such a block has not lifted."""
 
 REST_TIME, REST_RATE = 0.05, 0.01
 """A block at rest has not lifted for this time [1/p], nor turned faster than this [p alpha]."""
-
-TREMOR_TIME = 8.0
-"""A block that has not lifted for this time [1/p] after the motion trembles, and will not rock."""
 
 SLIDE_WIDTHS, THROWN_WIDTHS = 0.1, 1.0
 """A pivot that slides further than this part of the width has left the problem, and one higher
@@ -385,7 +382,7 @@ def decide(watch: Watch, row: Row) -> None:
     still = row.time - watch.turned_at >= watch.rest_time
     lies = size >= LYING or (still and size > LYING_PART * LYING)
     watch.overturned = lies or (over and size > alpha_of(watch, row.theta) and outward)
-    before = row.time - watch.rest_time * TREMOR_TIME / REST_TIME
+    before = row.time - watch.rest_time * FREE_ROCKING / REST_TIME
     trembles = before >= watch.motion_end and before >= watch.low_since  # which is nan aloft
     decided = watch.timed or watch.turned or trembles or (watch.resting and still)
     watch.done = watch.overturned or (decided and row.time >= watch.watched)

@@ -117,16 +117,13 @@ def draw_batch(lines: pd.DataFrame) -> Figure:
         look: dict[str, Any] = {"color": colour, "marker": marker}
         along = mine[mine["worlds"] == mine["worlds"].mode().max()].sort_values("dt_ms")
         axes.plot(along["cases_per_s"], along["median_error"], **look)
-        for line in mine.drop(along.index).to_dict("records"):
-            place = line["cases_per_s"], line["median_error"]
+        for it in mine.drop(along.index).to_dict("records"):
+            worlds, place = str(it["worlds"]), (it["cases_per_s"], it["median_error"])
             axes.plot(*place, fillstyle="none", **look)
-            axes.annotate(
-                f"{line['worlds']}", place, (0, -14), textcoords="offset points", ha="center"
-            )
-    for line in lines[~stepped].to_dict("records"):
-        axes.axvline(line["cases_per_s"], color="black", linewidth=2.0)
-        words = f"exact solution, \n{line['name']} "
-        axes.annotate(words, (line["cases_per_s"], 1.3e-5), ha="right")
+            axes.annotate(worlds, place, (0, -14), textcoords="offset points", ha="center")
+    for it in lines[~stepped].to_dict("records"):
+        axes.axvline(it["cases_per_s"], color="black", linewidth=2.0)
+        axes.annotate(f"exact solution, \n{it['name']} ", (it["cases_per_s"], 1.3e-5), ha="right")
     error_scale(axes.yaxis, 1e-5, 1.0, 1)
     axes.grid(alpha=0.25)
     ways = [dot(NAMES[name], MARKERS[name]) for name in usable["backend"].unique()]

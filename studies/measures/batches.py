@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from functools import cache
 from importlib import import_module
 from itertools import islice
@@ -38,13 +38,13 @@ NAMES = {EXACT: "the exact solution", C: "MuJoCo in C", WARP: "MuJoCo Warp"}
 NAMES |= {MJX: "MJX in float64", MJX32: "MJX in float32"}
 BATCHED = {WARP: ("mujoco_warp", "warp"), **dict.fromkeys((MJX, MJX32), ("mujoco.mjx", "mjx"))}
 """What steps a batch -> its module, and the extra that installs it."""
-MEASURED = ("name", "steps", "compile_s", "wall_s", "cases_per_s", "overflows", "unconverged")
+FAULTS = ("overflows", "unconverged")
+MEASURED = ("name", "steps", "compile_s", "wall_s", "cases_per_s", "memory_mb", *FAULTS)
 SPREAD = ("bits_differ", "outcomes_differ", "largest_spread")
 PAPER, RANDOM = "paper", "random"
 EVERY = {PAPER: 960, RANDOM: 500}
 """Cases of a kind."""
-SMALL, LARGE, LONG = 1.8891, 3.6279, 37.494
-"""Bounds of p [rad/s], and of the time to 8/p after the pulse [s], over the paper's cases."""
+SMALL, LARGE, LONG = 1.8891, 3.6279, 37.494  # bounds of p and of the time to 8/p after the pulse
 CHUNK = 200
 """Steps between two looks at whether a world is undecided."""
 ROOM = {"nconmax": 8, "njmax": 32}
@@ -63,7 +63,6 @@ ALPHA, WIDTH, HEIGHT, CALM_RATE, CALM_STEPS, DT = range(8, 14)
 COUNT, THETA, RATE, PEAK, CALM, STATE = range(6)
 """Columns of what was seen: steps; of the last one; peak [rad]; steps at rest; state."""
 RUNNING, DECIDED, FALLEN, LOST = 0.0, 1.0, 2.0, 3.0
-"""States of a world."""
 
 
 @cache
@@ -186,6 +185,13 @@ def timed(run: Callable[[], FloatArray], rows: FloatArray, runs: int, began: flo
     return {**found, "steps": int(seen[0, COUNT])}
 
 
+def bytes_of(of: Any) -> int:
+    """Return how long the arrays in dataclasses are."""
+    if is_dataclass(of):
+        return sum(bytes_of(getattr(of, each.name)) for each in fields(of))
+    return int(getattr(of, "capacity", getattr(of, "nbytes", 0)))
+
+
 def in_warp(models: Sequence[Any], rows: FloatArray, most: int, device: str, runs: int) -> Row:
     """Step a batch in MuJoCo Warp, on a GPU by a graph of one step."""
     wp, mjw = import_module("warp"), import_module("mujoco_warp")
@@ -228,9 +234,10 @@ def in_warp(models: Sequence[Any], rows: FloatArray, most: int, device: str, run
         graph = capture.graph
     wp.synchronize()
     found = timed(run, rows, runs, began)
+    found["memory_mb"] = 1e-6 * (bytes_of(model) + bytes_of(data))
     bits, stuck = data.overflow.numpy(), int(mjw.OverflowType.ITERATIONS)
-    found["overflows"] = int((bits & ~(stuck | int(mjw.OverflowType.LS_ITERATIONS)) != 0).sum())
-    found["unconverged"] = int((bits & stuck != 0).sum())
+    masks = ~(stuck | int(mjw.OverflowType.LS_ITERATIONS)), stuck
+    found |= {name: int((bits & mask != 0).sum()) for name, mask in zip(FAULTS, masks, strict=True)}
     return found | ({"name": on.name} if on.is_cuda else {})
 
 
@@ -272,6 +279,7 @@ def in_mjx(
         begin = given, data, jnp.zeros((STATE + 1, worlds))
         run = jax.jit(lambda now: jax.lax.while_loop(go_on, advance, now)[2]).lower(begin).compile()
         found = timed(lambda: np.array(run(begin), float).T, rows, runs, began)
+        found["memory_mb"] = 1e-6 * sum(map(bytes_of, jax.tree.leaves((given, data))))
     return found | ({"name": on.device_kind} if device != "cpu" else {})
 
 

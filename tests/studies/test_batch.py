@@ -1,6 +1,7 @@
 """The paper's cases as one batch: what MuJoCo in C gives, and what two runs differ by."""
 
 import math
+from dataclasses import make_dataclass
 
 import numpy as np
 import pandas as pd
@@ -37,6 +38,12 @@ def test_bits_outcomes_and_peaks_that_differ_are_counted():
         "outcomes_differ": 1,
         "largest_spread": pytest.approx(0.1),
     }
+
+
+def test_memory_is_that_of_all_arrays_however_deep():
+    inner = make_dataclass("Inner", ["row", "name"])(np.zeros(3), "none")
+    outer = make_dataclass("Outer", ["inner", "column"])(inner, np.zeros(2, np.float32))
+    assert batches.bytes_of(outer) == 3 * 8 + 2 * 4
 
 
 def test_worlds_of_mjx_in_float64_are_those_of_c():
