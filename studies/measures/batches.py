@@ -44,7 +44,7 @@ SPREAD = ("bits_differ", "outcomes_differ", "largest_spread")
 PAPER, RANDOM = "paper", "random"
 EVERY = {PAPER: 960, RANDOM: 500}
 """Cases of a kind."""
-SMALL, LARGE, LONG = 1.8891, 3.6279, 37.494  # bounds of p and of the time to 8/p after the pulse
+SMALL, LARGE, LONG = 1.8891, 3.6279, 37.494  # the paper's p, and time to 8/p after the pulse [s]
 CHUNK = 200
 """Steps between two looks at whether a world is undecided."""
 ROOM = {"nconmax": 8, "njmax": 32}

@@ -112,7 +112,7 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         Part("precision", "precision"),
         Part("batch", "batch", weaker="64 cases of 960; no GPU."),
         Part(
-            *("batch-cpu", "batch", "Does single precision hold the answer of a stiff contact?"),
+            *("batch-cpu", "batch", "What do batches give on a CPU, and what is too stiff?"),
             needs="--device cpu",
         ),
     ),

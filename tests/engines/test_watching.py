@@ -162,7 +162,6 @@ def test_a_soft_contact_that_leans_with_its_load_has_not_lifted(leans):
 
 
 def test_a_contact_that_trembles_for_good_ends_a_run():
-    """It turns faster than a block at rest may, and never lifts it."""
     motion, faster = pulse(0.9, 3.0, 2), 1e3 * BLOCK.p
 
     class Trembling(ScriptedWorld):

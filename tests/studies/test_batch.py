@@ -9,6 +9,7 @@ import pytest
 
 from studies import batch, respond
 from studies.kit.tables import unpacked
+from studies.kit.workers import answers
 from studies.measures import batches
 from studies.measures.batches import MJX, PAPER, RANDOM, C, all_cases, found_of, spread
 
@@ -53,6 +54,17 @@ def test_worlds_of_mjx_in_float64_are_those_of_c():
     plain, batched = (found_of({**asked, "backend": way})["peaks"] for way in (C, MJX))
     assert np.isfinite(plain).sum() >= 2
     assert batched == pytest.approx(plain, rel=1e-8)
+
+
+def models_of(cases):
+    asked = {"frame": "base", "step": 2e-3, "settings": {}}
+    for preset in ("recommended", "tuned"):
+        batches.batch_of([(case.block, case.motion, preset, asked) for case in cases], 1e-3)
+
+
+@pytest.mark.slow
+def test_a_process_has_room_for_the_models_of_all_random_cases():
+    assert dict(answers(models_of, [(all_cases(RANDOM),)], 1, 60.0)) == {0: None}
 
 
 def test_random_cases_are_no_smaller_larger_or_longer_than_the_papers():

@@ -1,7 +1,4 @@
-"""Processes: whatever one does is a row, and its run goes on; what ends a command ends it well.
-
-And engines of other packages: what cannot be loaded is a line; rows depend on their code.
-"""
+"""Processes: whatever one does is a row, what ends a command ends it well; engines of others."""
 
 import math
 import os
